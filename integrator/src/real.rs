@@ -1,0 +1,293 @@
+//! Arithmetic: [`Real`] is what a step may do with numbers, [`Single`] adds what only one comparable number can.
+
+use std::fmt::Debug;
+use std::ops::Neg;
+
+use faer::fx128;
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
+
+/// A number, or several lanes of numbers, that a step computes with.
+///
+/// Every operation gives the same bits on every platform: `+ - * /` and `sqrt` are correctly rounded, the
+/// trigonometric functions come from the `libm` crate and not from the platform's C library.
+pub trait Real:
+    Scalar
+    + Copy
+    + Debug
+    + Send
+    + Sync
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+{
+    /// The constant `x`. Exact in every precision only where `x` is: write `h / lit(6.0)`, not `h * lit(1.0 / 6.0)`.
+    fn lit(x: f64) -> Self;
+
+    /// `self * a + b`. Two roundings, except for types that exist to fuse them.
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Absolute value.
+    fn abs(self) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// `(cos x, sin x / x)` as functions of `x_squared`, smooth through zero: what an exponential map needs, without
+    /// a square root or a division for the small angles of a step.
+    fn cos_sinc(x_squared: Self) -> (Self, Self);
+
+    /// Whether the number (every lane of it) is neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
+
+/// One number with an order: what exact motions, Newton iterations and measurements need beyond [`Real`].
+pub trait Single: Real + PartialOrd {
+    /// Distance from 1 to the next larger number.
+    const EPSILON: f64;
+
+    /// The nearest `f64`.
+    fn to_f64(self) -> f64;
+
+    /// The same number in double-double, exactly.
+    fn widen(self) -> fx128;
+
+    /// The nearest number to a double-double.
+    fn narrow(x: fx128) -> Self;
+
+    /// e^x.
+    fn exp(self) -> Self;
+
+    /// Natural logarithm; NaN for negative numbers.
+    fn ln(self) -> Self;
+
+    /// The angle of the point (x, y) = (`other`, `self`) in (-pi, pi].
+    fn atan2(self, other: Self) -> Self;
+
+    /// The nearest integer.
+    fn round(self) -> Self;
+}
+
+/// Taylor sums of cos x and sin x / x in x^2, highest coefficient first, for |x| <= 1/2.
+///
+/// The first term left out is x^16/16! < 8e-19 (f64) and x^10/10! < 3e-10 (f32, six terms).
+const COS: [f64; 8] = [
+    -1.0 / 87_178_291_200.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 40_320.0,
+    -1.0 / 720.0,
+    1.0 / 24.0,
+    -0.5,
+    1.0,
+];
+const SINC: [f64; 8] = [
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 362_880.0,
+    -1.0 / 5_040.0,
+    1.0 / 120.0,
+    -1.0 / 6.0,
+    1.0,
+];
+/// Largest x^2 for which the Taylor sums are used.
+const TAYLOR_BOUND: f64 = 0.25;
+
+#[inline(always)]
+fn horner<T: Real>(coefficients: &[f64], x: T) -> T {
+    let (first, rest) = coefficients.split_first().expect("the tables above are not empty");
+    rest.iter().fold(T::lit(*first), |sum, &c| sum.mul_add(x, T::lit(c)))
+}
+
+macro_rules! real_for_primitive {
+    ($t:ty, $terms:literal, $sin:path, $cos:path, $exp:path, $ln:path, $atan2:path) => {
+        impl Real for $t {
+            #[inline(always)]
+            fn lit(x: f64) -> Self {
+                x as $t
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                ($sin(self), $cos(self))
+            }
+            #[inline(always)]
+            fn cos_sinc(x_squared: Self) -> (Self, Self) {
+                #[cold]
+                #[inline(never)]
+                fn by_sine_and_cosine(x_squared: $t) -> ($t, $t) {
+                    let x = x_squared.sqrt();
+                    ($cos(x), $sin(x) / x)
+                }
+                if x_squared <= TAYLOR_BOUND as $t {
+                    let skip = 8 - $terms;
+                    (horner(&COS[skip..], x_squared), horner(&SINC[skip..], x_squared))
+                } else {
+                    by_sine_and_cosine(x_squared)
+                }
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+        }
+
+        impl Single for $t {
+            const EPSILON: f64 = <$t>::EPSILON as f64;
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+            #[inline]
+            fn widen(self) -> fx128 {
+                fx128::from(self as f64)
+            }
+            #[inline]
+            fn narrow(x: fx128) -> Self {
+                (x.0 + x.1) as $t
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline]
+            fn atan2(self, other: Self) -> Self {
+                $atan2(self, other)
+            }
+            #[inline]
+            fn round(self) -> Self {
+                self.round()
+            }
+        }
+    };
+}
+
+real_for_primitive!(f64, 8, libm::sin, libm::cos, libm::exp, libm::log, libm::atan2);
+real_for_primitive!(f32, 6, libm::sinf, libm::cosf, libm::expf, libm::logf, libm::atan2f);
+
+/// pi / 2 in three parts, for the reduction of an argument.
+const HALF_PI: [f64; 3] = [1.570_796_326_794_896_6, 6.123_233_995_736_766e-17, -1.497_384_904_859_183_4e-33];
+
+/// 1 / n! in double-double.
+const INVERSE_FACTORIAL: [fx128; 26] = {
+    let mut table = [fx128::ONE; 26];
+    let mut n = 1;
+    while n < 26 {
+        table[n] = table[n - 1].const_div(fx128::from_f64(n as f64));
+        n += 1;
+    }
+    table
+};
+
+/// Taylor sums of (cos x, sin x / x) for x^2 <= 1/16; the first term left out is x^24/24! < 6e-39.
+fn taylor_double_double(x_squared: fx128) -> (fx128, fx128) {
+    let sum = |parity: usize| {
+        (0..12).rev().fold(fx128::ZERO, |sum, k| INVERSE_FACTORIAL[2 * k + parity] - sum * x_squared)
+    };
+    (sum(0), sum(1))
+}
+
+/// `faer::fx128` has no trigonometric functions: the argument is reduced modulo pi/2 with a three-part constant, divided
+/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6.
+impl Real for fx128 {
+    #[inline(always)]
+    fn lit(x: f64) -> Self {
+        Self::from_f64(x)
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        fx128::sqrt(self)
+    }
+    #[inline]
+    fn abs(self) -> Self {
+        fx128::abs(self)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        if !fx128::is_finite(self) {
+            return (fx128::NAN, fx128::NAN);
+        }
+        let quarters = (self.0 / HALF_PI[0]).round();
+        let k = fx128::from_f64(quarters);
+        let reduced = HALF_PI.iter().fold(self, |x, &part| x.sub_accurate(k * fx128::from_f64(part)));
+        let x = reduced * fx128::from_f64(0.25);
+        let (mut cosine, sinc) = taylor_double_double(x * x);
+        let mut sine = sinc * x;
+        for _ in 0..2 {
+            let twice = sine + sine;
+            (sine, cosine) = (twice * cosine, fx128::ONE - twice * sine);
+        }
+        match quarters.rem_euclid(4.0) as u8 {
+            0 => (sine, cosine),
+            1 => (cosine, -sine),
+            2 => (-sine, -cosine),
+            _ => (-cosine, sine),
+        }
+    }
+    fn cos_sinc(x_squared: Self) -> (Self, Self) {
+        if x_squared.0 <= 0.0625 {
+            taylor_double_double(x_squared)
+        } else {
+            let x = fx128::sqrt(x_squared);
+            let (sine, cosine) = x.sin_cos();
+            (cosine, sine / x)
+        }
+    }
+    #[inline]
+    fn is_finite(self) -> bool {
+        fx128::is_finite(self)
+    }
+}
+
+impl Single for fx128 {
+    const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.0 + self.1
+    }
+    #[inline]
+    fn widen(self) -> fx128 {
+        self
+    }
+    #[inline]
+    fn narrow(x: fx128) -> Self {
+        x
+    }
+    fn exp(self) -> Self {
+        fx128::exp(self)
+    }
+    fn ln(self) -> Self {
+        fx128::ln(self)
+    }
+    /// One Newton step from the `f64` angle a: a + (y cos a - x sin a) / |(x, y)|; what is left is the cube of 1e-16.
+    fn atan2(self, other: Self) -> Self {
+        let angle = fx128::from_f64(libm::atan2(self.0, other.0));
+        let radius = (self * self + other * other).sqrt();
+        if radius.0 == 0.0 || !radius.is_finite() {
+            return angle;
+        }
+        let (sine, cosine) = angle.sin_cos();
+        angle + (self * cosine - other * sine) / radius
+    }
+    fn round(self) -> Self {
+        let high = self.0.round();
+        if high == self.0 { fx128::from_f64(high) + fx128::from_f64(self.1.round()) } else { fx128::from_f64(high) }
+    }
+}

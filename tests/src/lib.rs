@@ -1,0 +1,1 @@
+//! Shared helpers of the tests. The tests themselves are the files of `tests/tests/`.
