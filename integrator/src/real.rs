@@ -199,9 +199,8 @@ const INVERSE_FACTORIAL: [fx128; 26] = {
 
 /// Taylor sums of (cos x, sin x / x) for x^2 <= 1/16; the first term left out is x^24/24! < 6e-39.
 fn taylor_double_double(x_squared: fx128) -> (fx128, fx128) {
-    let sum = |parity: usize| {
-        (0..12).rev().fold(fx128::ZERO, |sum, k| INVERSE_FACTORIAL[2 * k + parity] - sum * x_squared)
-    };
+    let sum =
+        |parity: usize| (0..12).rev().fold(fx128::ZERO, |sum, k| INVERSE_FACTORIAL[2 * k + parity] - sum * x_squared);
     (sum(0), sum(1))
 }
 
