@@ -1,1 +1,33 @@
-//! x
+//! How results are shown: tables and CSV, charts (SVG), claims and their verdicts, one page (HTML).
+//!
+//! This crate knows no physics and integrates nothing. It is given plain data and gives back text:
+//!
+//! ```text
+//! rows    -> table::write_csv  -> CSV       the only hand-over between measuring and showing
+//! Figure  -> plot::svg         -> SVG
+//! Claim   -> claim::exit_code  -> 0 or 1
+//! Page    -> Page::html        -> one self-contained HTML file
+//! bytes   -> OutputDir::write  -> a file, whole or not at all
+//! ```
+//!
+//! Invariants:
+//! - The same input gives the same bytes: no clock, no random number, no font of the machine, no hash order.
+//! - Nothing but [`files`] touches the disk.
+//! - The plotting library is named in [`plot`] alone, so that its faults are met and tested in one place.
+//! - A value that cannot be drawn (NaN, infinite, not positive on a logarithmic axis) is left out, never moved.
+
+pub mod claim;
+pub mod error;
+pub mod figure;
+pub mod files;
+pub mod page;
+pub mod plot;
+pub mod table;
+
+pub use claim::{Claim, Verdict, exit_code};
+pub use error::Error;
+pub use figure::{Axis, AxisName, Cells, Figure, Layer, Line, Marker, Palette, Scale, Series};
+pub use files::OutputDir;
+pub use page::{Block, Finding, Page, Section};
+pub use plot::svg;
+pub use table::{Align, Table, read_csv, write_csv};

@@ -1,0 +1,154 @@
+//! The output directory: the only place of this crate that writes.
+
+use crate::Error;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Component, Path, PathBuf};
+
+/// A directory that results are written to.
+#[derive(Clone, Debug)]
+pub struct OutputDir {
+    root: PathBuf,
+}
+
+impl OutputDir {
+    /// The directory at `root`, created with its parents where missing.
+    ///
+    /// # Errors
+    /// [`Error::Write`] when it cannot be created.
+    pub fn create(root: impl Into<PathBuf>) -> Result<Self, Error> {
+        let root = root.into();
+        fs::create_dir_all(&root).map_err(|source| refused(&root, source))?;
+        Ok(Self { root })
+    }
+
+    /// The directory itself.
+    pub fn path(&self) -> &Path {
+        &self.root
+    }
+
+    /// Writes a file whole or not at all: beside its place first, flushed to the disk, then renamed over it.
+    /// `name` may hold sub-directories, which are created. Gives the path written.
+    ///
+    /// # Errors
+    /// [`Error::OutsideOutput`] for a name that leaves the directory; [`Error::Write`] when the disk is full or
+    /// refuses, in which case a file that stood there before is untouched.
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf, Error> {
+        self.write_with(name, |file| file.write_all(bytes.as_ref()))
+    }
+
+    fn write_with(&self, name: &str, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<PathBuf, Error> {
+        let path = self.inside(name)?;
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(|source| refused(parent, source))?;
+        }
+        let beside = beside(&path);
+        let written = File::create(&beside)
+            .and_then(|mut file| fill(&mut file).and_then(|()| file.sync_all()))
+            .and_then(|()| fs::rename(&beside, &path));
+        written.map_err(|source| {
+            // The half-written file is of no use; that it may be left over is the lesser trouble to report.
+            let _ = fs::remove_file(&beside);
+            refused(&path, source)
+        })?;
+        Ok(path)
+    }
+
+    fn inside(&self, name: &str) -> Result<PathBuf, Error> {
+        let relative = Path::new(name);
+        let plain = relative.components().all(|part| matches!(part, Component::Normal(_)));
+        if !plain || relative.file_name().is_none() || name.ends_with(['/', '\\']) {
+            return Err(Error::OutsideOutput { name: name.to_owned(), root: self.root.clone() });
+        }
+        Ok(self.root.join(relative))
+    }
+}
+
+/// The name written first. The process id keeps two programs that write the same report apart.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}.part", std::process::id()));
+    path.with_file_name(name)
+}
+
+fn refused(path: &Path, source: io::Error) -> Error {
+    let remedy = match source.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space or choose another directory",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a directory you may write to",
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists | io::ErrorKind::IsADirectory => {
+            "a file and a directory have the same name: move one, or choose another directory"
+        }
+        _ => "check the path, or choose another directory",
+    };
+    Error::Write { path: path.to_owned(), source, remedy }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn output() -> (tempfile::TempDir, OutputDir) {
+        let temporary = tempfile::tempdir().expect("a temporary directory");
+        let output = OutputDir::create(temporary.path().join("a/report")).expect("created");
+        (temporary, output)
+    }
+
+    fn names(output: &OutputDir) -> Vec<String> {
+        let entries = fs::read_dir(output.path()).expect("listed");
+        entries.map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned()).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_else_is_left() {
+        let (_keep, output) = output();
+        output.write("rows.csv", "old").expect("written");
+        let path = output.write("rows.csv", "new").expect("written");
+        assert_eq!(fs::read_to_string(path).expect("read"), "new");
+        assert_eq!(names(&output), ["rows.csv"]);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_earlier_file_as_it_was() {
+        let (_keep, output) = output();
+        output.write("rows.csv", "earlier").expect("written");
+        let full = |file: &mut File| {
+            file.write_all(b"half of the")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        };
+        let error = output.write_with("rows.csv", full).expect_err("the disk is full");
+        assert!(error.to_string().contains("rows.csv") && error.to_string().contains("free some space"), "{error}");
+        assert_eq!(fs::read_to_string(output.path().join("rows.csv")).expect("read"), "earlier");
+        assert_eq!(names(&output), ["rows.csv"]);
+    }
+
+    /// `/dev/full` takes every open and refuses every write: the device's own 'no space left'.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_reported_as_such() {
+        let source = fs::write("/dev/full", [0_u8; 16]).expect_err("always full");
+        let error = refused(Path::new("report/rows.csv"), source);
+        assert!(error.to_string().contains("free some space"), "{error}");
+    }
+
+    #[test]
+    fn names_that_leave_the_directory_are_refused() {
+        let (keep, output) = output();
+        for name in ["../x.csv", "a/../../x.csv", "/tmp/x.csv", "", ".", "..", "a/..", "a/"] {
+            let refused = output.write(name, "x");
+            assert!(matches!(refused, Err(Error::OutsideOutput { .. })), "'{name}': {refused:?}");
+        }
+        assert!(!keep.path().join("a/x.csv").exists() && names(&output).is_empty());
+        assert!(output.write("figures/x.svg", "x").expect("a sub-directory").ends_with("a/report/figures/x.svg"));
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_directory_is_explained() {
+        let (keep, output) = output();
+        output.write("x", "x").expect("written");
+        let error = OutputDir::create(output.path().join("x/y")).expect_err("x is a file");
+        assert!(error.to_string().contains("same name"), "{error}");
+        drop(keep);
+    }
+}
