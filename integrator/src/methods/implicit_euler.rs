@@ -1,0 +1,23 @@
+use crate::model::{Method, Model, State};
+use crate::newton::{Pair, no_solution, solve};
+use crate::real::Single;
+use crate::space::{Space, Vector};
+
+/// Implicit (backward) Euler: v1 = v0 + h rate(t1, q1, v1), q1 = q0 + h velocity(q1, v1). Order 1; Newton's iteration.
+///
+/// Where the iteration does not converge the state becomes NaN, which the driver reports.
+/// Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996), IV.1 (1.10).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImplicitEuler;
+
+impl<T: Single, M: Model<T>> Method<T, M> for ImplicitEuler {
+    fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
+        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), h) };
+        let end = |z: &Pair<_>| State { q: s.q.retract(z.w, h), v: z.v };
+        let solution = solve::<T, _>(guess, |z| {
+            let s1 = end(z);
+            Pair { w: z.w - m.velocity(s1.q, s1.v), v: z.v - s.v.plus(m.rate(t + h, &s1), h) }
+        });
+        end(&solution.unwrap_or(Pair { w: no_solution(), v: no_solution() }))
+    }
+}

@@ -1,0 +1,27 @@
+use crate::model::{Method, Model, State};
+use crate::newton::{Pair, no_solution, solve};
+use crate::real::Single;
+use crate::space::{Space, Vector};
+
+/// Implicit midpoint: with vm = (v0 + v1) / 2, qm = q0 + (h/2) w and w = velocity(qm, vm), v1 = v0 + h rate(t0 + h/2, qm, vm)
+/// and q1 = q0 + h w. Order 2, symmetric; Newton's iteration.
+///
+/// Conserves every quadratic invariant of a flat space exactly. Where the iteration does not converge the state becomes NaN,
+/// which the driver reports. Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), I.1.1 (1.7).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImplicitMidpoint;
+
+impl<T: Single, M: Model<T>> Method<T, M> for ImplicitMidpoint {
+    fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
+        let half = h * T::lit(0.5);
+        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), half) };
+        // The unknown is the middle of the step: w, and vm.
+        let solution = solve::<T, _>(guess, |z| {
+            let middle = State { q: s.q.retract(z.w, half), v: z.v };
+            let w = m.velocity(middle.q, middle.v);
+            Pair { w: z.w - w, v: z.v - s.v.plus(m.rate(t + half, &middle), half) }
+        });
+        let z = solution.unwrap_or(Pair { w: no_solution(), v: no_solution() });
+        State { q: s.q.retract(z.w, h), v: z.v + (z.v - s.v) }
+    }
+}

@@ -1,0 +1,66 @@
+//! [`State`], [`Model`] and [`Method`]: what moves, by which law, by which rule.
+
+use crate::real::Real;
+use crate::space::Space;
+
+/// The tangent of a model's configuration space.
+pub type Tangent<M, T> = <<M as Model<T>>::Config as Space>::Tangent;
+
+/// Configuration and stored velocity at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<Q: Space> {
+    /// Configuration: positions in m, angles in rad, an attitude.
+    pub q: Q,
+    /// What the model stores beside it: a velocity, or a momentum that [`Model::velocity`] turns into one.
+    pub v: Q::Tangent,
+}
+
+impl<Q: Space> State<Q> {
+    /// Whether every number of the state is finite.
+    #[inline(always)]
+    pub fn is_finite(&self) -> bool {
+        use crate::space::Vector;
+        self.q.is_finite() && self.v.is_finite()
+    }
+
+    /// [`Space::settled`] of the configuration.
+    #[inline(always)]
+    #[must_use]
+    pub fn settled(self) -> Self {
+        State { q: self.q.settled(), v: self.v }
+    }
+}
+
+/// A law of motion: q' = velocity(q, v), v' = rate(t, q, v).
+pub trait Model<T: Real> {
+    /// Where configurations live.
+    type Config: Space<Scalar = T>;
+
+    /// dv/dt.
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Tangent<Self, T>;
+
+    /// The velocity of the configuration: v itself, unless what is stored is a momentum.
+    #[inline(always)]
+    fn velocity(&self, _q: Self::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
+        v
+    }
+}
+
+/// A one-step rule: the state at t + h from the state at t.
+pub trait Method<T: Real, M: Model<T>> {
+    /// One step. A step that cannot be taken (an iteration that does not converge) returns a non-finite state.
+    fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config>;
+}
+
+impl<T: Real, M: Model<T>> Model<T> for &M {
+    type Config = M::Config;
+
+    #[inline(always)]
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Tangent<Self, T> {
+        (**self).rate(t, s)
+    }
+    #[inline(always)]
+    fn velocity(&self, q: Self::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
+        (**self).velocity(q, v)
+    }
+}

@@ -1,0 +1,107 @@
+//! The solver the implicit methods share: Newton's iteration in the tangent space.
+//!
+//! The direction is found in `f64`, only the residual is in `T`: an approximate Jacobian costs iterations, not accuracy.
+
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+use crate::real::Single;
+use crate::space::Vector;
+
+/// Newton steps before the iteration is given up.
+const MOST_ITERATIONS: usize = 50;
+/// The Jacobian is renewed when an iteration shrinks the correction by less than this factor.
+const SLOW: f64 = 0.1;
+
+/// The pair (velocity of the configuration, stored velocity) at the end or in the middle of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<V> {
+    pub(crate) w: V,
+    pub(crate) v: V,
+}
+
+impl<V> Pair<V> {
+    fn get<T: Single>(&self, i: usize) -> T
+    where
+        V: Vector<T>,
+    {
+        if i < V::DIM { self.w.component(i) } else { self.v.component(i - V::DIM) }
+    }
+
+    fn from_fn<T: Single>(mut f: impl FnMut(usize) -> T) -> Self
+    where
+        V: Vector<T>,
+    {
+        let w = V::from_fn(&mut f);
+        Pair { w, v: V::from_fn(|i| f(V::DIM + i)) }
+    }
+
+    fn norm<T: Single>(&self) -> f64
+    where
+        V: Vector<T>,
+    {
+        (0..2 * V::DIM).map(|i| self.get::<T>(i).to_f64().powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// A zero of `residual` near `guess`, to rounding; `None` where the iteration does not converge.
+pub(crate) fn solve<T: Single, V: Vector<T>>(
+    guess: Pair<V>,
+    residual: impl Fn(&Pair<V>) -> Pair<V>,
+) -> Option<Pair<V>> {
+    let mut z = guess;
+    let mut jacobian: Option<LU<f64, Dyn, Dyn>> = None;
+    let mut last = f64::INFINITY;
+    for _ in 0..MOST_ITERATIONS {
+        let r = residual(&z);
+        let lu = match jacobian.take() {
+            Some(lu) => lu,
+            None => decompose(&z, &r, &residual)?,
+        };
+        let right = DVector::from_fn(2 * V::DIM, |i, _| r.get::<T>(i).to_f64());
+        let correction = lu.solve(&right)?;
+        let size = correction.norm();
+        if !size.is_finite() {
+            return None;
+        }
+        z = Pair::from_fn(|i| z.get::<T>(i) - T::lit(correction[i]));
+        // The last correction was applied: what remains is its square, or `SLOW` of it.
+        let rounding = T::EPSILON * z.norm::<T>();
+        if size <= 0.25 * rounding || (size <= 16.0 * rounding && size >= 0.5 * last) || size == 0.0 {
+            return Some(z);
+        }
+        if size <= SLOW * last {
+            jacobian = Some(lu);
+        }
+        last = size;
+    }
+    None
+}
+
+/// LU decomposition of the Jacobian by forward differences; the residual's own unknowns come first in every row.
+fn decompose<T: Single, V: Vector<T>>(
+    z: &Pair<V>,
+    r: &Pair<V>,
+    residual: &impl Fn(&Pair<V>) -> Pair<V>,
+) -> Option<LU<f64, Dyn, Dyn>> {
+    let n = 2 * V::DIM;
+    let scale = z.norm::<T>();
+    if !scale.is_finite() {
+        return None;
+    }
+    let root = T::EPSILON.sqrt();
+    let mut jacobian = DMatrix::zeros(n, n);
+    for j in 0..n {
+        let delta = T::lit(root * (z.get::<T>(j).to_f64().abs() + scale / n as f64 + f64::MIN_POSITIVE / root));
+        let moved = Pair::from_fn(|i| if i == j { z.get::<T>(i) + delta } else { z.get(i) });
+        let change = residual(&moved);
+        for i in 0..n {
+            jacobian[(i, j)] = ((change.get::<T>(i) - r.get(i)) / delta).to_f64();
+        }
+    }
+    jacobian.iter().all(|x: &f64| x.is_finite()).then(|| jacobian.lu())
+}
+
+/// A vector that says 'no solution' in the one way the driver understands.
+pub(crate) fn no_solution<T: Single, V: Vector<T>>() -> V {
+    V::from_fn(|_| T::lit(f64::NAN))
+}

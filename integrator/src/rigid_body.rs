@@ -1,0 +1,192 @@
+//! The rigid body: one physics ([`RigidBody`]), several models of it that differ in the angular quantity they store.
+//!
+//! L = I_w omega with I_w = R I R^T; dL/dt = tau. In the world frame I_w omega' = tau - omega x (I_w omega), in the body
+//! frame I omega' = tau - omega x (I omega). What is stored is a choice of model, and it changes what a method conserves.
+
+use std::marker::PhantomData;
+
+use nalgebra::Vector3;
+
+use crate::model::{Model, State};
+use crate::pose::{Body, Exponential, Pose, Twist, Update, World};
+use crate::real::Real;
+use crate::rotation::{Rotation, cross};
+use crate::space::Vector;
+
+/// A torque about the centre of mass (or about the fixed point), N m, in the frame in which the physics gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Torque<T: Real> {
+    /// No torque, and no arithmetic for it.
+    None,
+    /// World components.
+    World(Vector3<T>),
+    /// Body components.
+    Body(Vector3<T>),
+}
+
+impl<T: Real> Torque<T> {
+    /// `rest + torque`, in world components.
+    #[inline(always)]
+    pub fn plus_in_world(self, attitude: Rotation<T>, rest: Vector3<T>) -> Vector3<T> {
+        match self {
+            Torque::None => rest,
+            Torque::World(torque) => rest + torque,
+            Torque::Body(torque) => rest + attitude.rotate(torque),
+        }
+    }
+
+    /// `rest + torque`, in body components.
+    #[inline(always)]
+    pub fn plus_in_body(self, attitude: Rotation<T>, rest: Vector3<T>) -> Vector3<T> {
+        match self {
+            Torque::None => rest,
+            Torque::World(torque) => rest + attitude.rotate_back(torque),
+            Torque::Body(torque) => rest + torque,
+        }
+    }
+}
+
+/// What the loads of a body may depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinematics<T: Real, P> {
+    /// Centre of mass, world frame, m.
+    pub position: P,
+    /// Its velocity, world frame, m/s.
+    pub velocity: P,
+    /// Body to world.
+    pub attitude: Rotation<T>,
+    /// Angular velocity, body frame, rad/s.
+    pub omega_body: Vector3<T>,
+}
+
+/// The physics of one rigid body, whatever a model stores of it.
+pub trait RigidBody<T: Real> {
+    /// `Vector3<T>`, or [`Fixed`](crate::pose::Fixed) where a point of the body is held.
+    type Position: Vector<T>;
+
+    /// Principal moments of inertia along the body axes, kg m^2.
+    fn inertia(&self) -> Vector3<T>;
+
+    /// The applied torque. The gyroscopic term is not part of it.
+    fn torque(&self, t: T, at: &Kinematics<T, Self::Position>) -> Torque<T>;
+
+    /// Force / mass, world frame, m/s^2.
+    #[inline(always)]
+    fn acceleration(&self, _t: T, _at: &Kinematics<T, Self::Position>) -> Self::Position {
+        Self::Position::zero()
+    }
+}
+
+/// Stores the angular velocity in the world frame: omega' = I_w^-1 (tau - omega x I_w omega).
+#[derive(Clone, Copy, Debug)]
+pub struct WorldOmega<B, U = Exponential<World>>(pub B, PhantomData<U>);
+
+/// Stores the angular velocity in the body frame: omega' = I^-1 (tau - omega x I omega). No R I R^T anywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyOmega<B, U = Exponential<Body>>(pub B, PhantomData<U>);
+
+/// Stores the angular momentum in the world frame: L' = tau, omega = I_w^-1 L. The gyroscopic term is in the kinematics.
+#[derive(Clone, Copy, Debug)]
+pub struct WorldMomentum<B, U = Exponential<World>>(pub B, PhantomData<U>);
+
+/// The starting description, as printed: I_w^-1 = R I^-1 R^T, omega' = I_w^-1 tau, without the gyroscopic term. It is
+/// consistent only where omega x I omega vanishes: spheres, and spin and torque about one principal axis.
+#[derive(Clone, Copy, Debug)]
+pub struct WithoutGyroscopicTerm<B, U = Exponential<World>>(pub B, PhantomData<U>);
+
+macro_rules! constructor {
+    ($($model:ident),*) => {$(
+        impl<B, U> $model<B, U> {
+            /// The model of a body.
+            pub fn new(body: B) -> Self {
+                $model(body, PhantomData)
+            }
+        }
+    )*};
+}
+constructor!(WorldOmega, BodyOmega, WorldMomentum, WithoutGyroscopicTerm);
+
+/// Kinematics of a state whose angular velocity in the body frame is known.
+#[inline(always)]
+fn kinematics<T: Real, U: Update, P: Vector<T>>(
+    q: &Pose<T, U, P>,
+    velocity: P,
+    omega_body: Vector3<T>,
+) -> Kinematics<T, P> {
+    Kinematics { position: q.position, velocity, attitude: q.attitude, omega_body }
+}
+
+impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Model<T> for WorldOmega<B, U> {
+    type Config = Pose<T, U, B::Position>;
+
+    #[inline(always)]
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Twist<T, B::Position> {
+        let (attitude, inertia) = (s.q.attitude, self.0.inertia());
+        let omega_body = attitude.rotate_back(s.v.angular);
+        let momentum = attitude.rotate(inertia.component_mul(&omega_body));
+        let at = kinematics(&s.q, s.v.linear, omega_body);
+        let torque = self.0.torque(t, &at).plus_in_world(attitude, cross(momentum, s.v.angular));
+        let angular = attitude.rotate(attitude.rotate_back(torque).component_div(&inertia));
+        Twist { linear: self.0.acceleration(t, &at), angular }
+    }
+}
+
+impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Model<T> for BodyOmega<B, U> {
+    type Config = Pose<T, U, B::Position>;
+
+    #[inline(always)]
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Twist<T, B::Position> {
+        let inertia = self.0.inertia();
+        let at = kinematics(&s.q, s.v.linear, s.v.angular);
+        let gyroscopic = cross(inertia.component_mul(&s.v.angular), s.v.angular);
+        let torque = self.0.torque(t, &at).plus_in_body(s.q.attitude, gyroscopic);
+        Twist { linear: self.0.acceleration(t, &at), angular: torque.component_div(&inertia) }
+    }
+}
+
+impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Model<T> for WorldMomentum<B, U> {
+    type Config = Pose<T, U, B::Position>;
+
+    #[inline(always)]
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Twist<T, B::Position> {
+        let omega_body = s.q.attitude.rotate_back(s.v.angular).component_div(&self.0.inertia());
+        let at = kinematics(&s.q, s.v.linear, omega_body);
+        let angular = self.0.torque(t, &at).plus_in_world(s.q.attitude, Vector3::zero());
+        Twist { linear: self.0.acceleration(t, &at), angular }
+    }
+
+    #[inline(always)]
+    fn velocity(&self, q: Self::Config, v: Twist<T, B::Position>) -> Twist<T, B::Position> {
+        let omega_body = q.attitude.rotate_back(v.angular).component_div(&self.0.inertia());
+        Twist { linear: v.linear, angular: q.attitude.rotate(omega_body) }
+    }
+}
+
+impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Model<T> for WithoutGyroscopicTerm<B, U> {
+    type Config = Pose<T, U, B::Position>;
+
+    #[inline(always)]
+    fn rate(&self, t: T, s: &State<Self::Config>) -> Twist<T, B::Position> {
+        let attitude = s.q.attitude;
+        let at = kinematics(&s.q, s.v.linear, attitude.rotate_back(s.v.angular));
+        let torque = self.0.torque(t, &at).plus_in_body(attitude, Vector3::zero());
+        Twist { linear: self.0.acceleration(t, &at), angular: attitude.rotate(torque.component_div(&self.0.inertia())) }
+    }
+}
+
+impl<T: Real, B: RigidBody<T>> RigidBody<T> for &B {
+    type Position = B::Position;
+
+    #[inline(always)]
+    fn inertia(&self) -> Vector3<T> {
+        (**self).inertia()
+    }
+    #[inline(always)]
+    fn torque(&self, t: T, at: &Kinematics<T, B::Position>) -> Torque<T> {
+        (**self).torque(t, at)
+    }
+    #[inline(always)]
+    fn acceleration(&self, t: T, at: &Kinematics<T, B::Position>) -> B::Position {
+        (**self).acceleration(t, at)
+    }
+}
