@@ -1,0 +1,1 @@
+//! The search for the window of steps that show the order.
