@@ -1,0 +1,166 @@
+//! How wrong is it? The error against the step, and the order observed.
+
+use std::collections::BTreeMap;
+
+use faer::fx128;
+use integrator::Real;
+use integrator::methods::MethodId;
+use serde::{Deserialize, Serialize};
+
+use crate::observation::{Observation, Quantity};
+use crate::order::{self, Expected, Limits, Sample};
+use crate::run::{Outcome, Precision, Run, Trajectory};
+use crate::scene::{AnyScene, ExpectedOrder};
+use crate::study::Selection;
+use crate::sweep::in_parallel;
+
+/// Halvings of the step from the coarsest to the finest run.
+pub const HALVINGS: u32 = 12;
+/// The same with `--quick`.
+pub const QUICK_HALVINGS: u32 = 10;
+/// Times at which a run is compared with the exact motion, evenly spaced; also the end.
+const CHECKPOINTS: u64 = 32;
+
+/// The error of one quantity in one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Scene or preset.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Number of steps.
+    pub steps: u64,
+    /// Step, s.
+    pub h_s: f64,
+    /// What was compared.
+    pub quantity: Quantity,
+    /// Unit of the errors.
+    pub unit: String,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// The first step that failed.
+    pub failed_step: Option<u64>,
+    /// Error at the end.
+    pub error_end: Option<f64>,
+    /// Largest error at 32 evenly spaced times.
+    pub error_max: Option<f64>,
+    /// Rounding error at the end: distance from the double-double run of the same step.
+    pub rounding_end: Option<f64>,
+    /// Largest rounding error at the same times.
+    pub rounding_max: Option<f64>,
+    /// Size of the quantity at the end of the exact motion, in the same unit.
+    pub scale: f64,
+    /// Evaluations of the force law.
+    pub evaluations: u64,
+}
+
+/// Where in a run an error is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// At the end.
+    End,
+    /// The largest of the run.
+    Max,
+}
+
+struct Job<'a> {
+    scene: &'a dyn AnyScene,
+    exact: &'a [Observation],
+    method: MethodId,
+    steps: u64,
+}
+
+/// Runs every scene, method and step in every precision.
+pub fn measure(selection: &Selection) -> Vec<Row> {
+    let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
+    let exact: Vec<Vec<Observation>> =
+        in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| exact_motion(scene.as_ref()));
+    let mut jobs = Vec::new();
+    for (scene, exact) in selection.scenes.iter().zip(&exact) {
+        for &method in &selection.methods {
+            for halving in 0..=halvings {
+                let steps = scene.scene().info().coarsest_steps << halving;
+                jobs.push(Job { scene: scene.as_ref(), exact, method, steps });
+            }
+        }
+    }
+    let cost = |job: &Job<'_>| job.steps * if job.method.is_implicit() { 20 } else { u64::from(job.method.order()) };
+    let rows = in_parallel(&jobs, cost, &selection.progress, |job| job.rows(&selection.precisions));
+    rows.into_iter().flatten().collect()
+}
+
+/// The exact motion at the checkpoints of every run, k T / 32.
+fn exact_motion(scene: &dyn AnyScene) -> Vec<Observation> {
+    let end = fx128::lit(scene.scene().info().horizon_s);
+    let at = |k: u64| scene.exact(end * fx128::lit(k as f64) / fx128::lit(CHECKPOINTS as f64));
+    (0..=CHECKPOINTS).map(at).collect()
+}
+
+impl Job<'_> {
+    fn rows(&self, precisions: &[Precision]) -> Vec<Row> {
+        let run = |precision| {
+            let end_s = self.scene.scene().info().horizon_s;
+            let run = Run { method: self.method, precision, end_s, steps: self.steps };
+            self.scene.run(&run, (self.steps / CHECKPOINTS).max(1))
+        };
+        let reference = run(Precision::DoubleDouble);
+        let row = |&precision: &Precision| match precision {
+            Precision::DoubleDouble => self.compare(precision, &reference, &reference),
+            _ => self.compare(precision, &run(precision), &reference),
+        };
+        precisions.iter().flat_map(row).collect()
+    }
+
+    /// The exact motion at a step; the numbers of steps are powers of two, so that every checkpoint is a step or beyond
+    /// the reach of a coarse run.
+    fn exact_at(&self, step: u64) -> &Observation {
+        &self.exact[(step * CHECKPOINTS / self.steps) as usize]
+    }
+
+    fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
+        let errors = largest(run.seen.iter().map(|(step, seen)| seen.distances(self.exact_at(*step))));
+        let rounding = largest(run.seen.iter().zip(&reference.seen).map(|((_, a), (_, b))| a.distances(b)));
+        let end = run.end().map(|seen| seen.distances(self.exact_at(self.steps)));
+        let rounding_end = run.end().zip(reference.end()).map(|(a, b)| a.distances(b));
+        let pick = |list: &Option<Vec<(Quantity, f64)>>, quantity| {
+            list.as_ref()?.iter().find(|(q, _)| *q == quantity).map(|(_, x)| *x).filter(|x| x.is_finite())
+        };
+        let last = self.exact_at(self.steps);
+        let finished = run.outcome == Outcome::Finished;
+        let quantities = last.values.iter().map(|(quantity, _)| *quantity);
+        quantities
+            .map(|quantity| Row {
+                scene: self.scene.id().to_owned(),
+                method: self.method.id().to_owned(),
+                precision,
+                steps: self.steps,
+                h_s: self.scene.scene().info().horizon_s / self.steps as f64,
+                quantity,
+                unit: quantity.unit().to_owned(),
+                outcome: run.outcome,
+                failed_step: run.failed_step,
+                error_end: pick(&end, quantity),
+                error_max: if finished { errors.get(&quantity).copied() } else { None },
+                rounding_end: pick(&rounding_end, quantity),
+                rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
+                scale: last.scale(quantity),
+                evaluations: run.evaluations,
+            })
+            .collect()
+    }
+}
+
+/// The largest distance of each quantity; a NaN stays.
+fn largest(distances: impl Iterator<Item = Vec<(Quantity, f64)>>) -> BTreeMap<Quantity, f64> {
+    let mut largest = BTreeMap::new();
+    for (quantity, distance) in distances.flatten() {
+        let entry = largest.entry(quantity).or_insert(distance);
+        if distance > *entry || distance.is_nan() {
+            *entry = distance;
+        }
+    }
+    largest
+}

@@ -1,0 +1,248 @@
+//! What a scene is: a model with its exact motion in any arithmetic, and what is known about it beforehand.
+
+use faer::fx128;
+use integrator::methods::MethodId;
+use integrator::pose::{Exponential, World};
+use integrator::rigid_body::{Kinematics, RigidBody, WorldOmega};
+use integrator::{Model, Pose, Single, State, Twist};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::growth::Law;
+use crate::observation::{Observation, Quantity};
+use crate::run::{Run, Trajectory, run_model};
+use crate::scenes::parameters::Parameters;
+
+/// What a reader should know of a scene before looking at its numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Info {
+    /// One line: what moves, and why it is looked at.
+    pub about: &'static str,
+    /// Where the exact motion comes from.
+    pub source: &'static str,
+    /// End of an error run, s: dyadic, and neither a period nor half of one.
+    pub horizon_s: f64,
+    /// Natural time scale, s: 1/omega, 1/k, ...
+    pub time_scale_s: f64,
+    /// Steps of the coarsest run of a sweep, a power of two.
+    pub coarsest_steps: u64,
+}
+
+/// A quantity that a scene keeps account of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Balance {
+    /// Kinetic plus potential energy, J.
+    Energy,
+    /// Linear momentum, kg m/s.
+    Momentum,
+    /// Angular momentum about the centre of mass, the fixed point or the centre of force, kg m^2/s.
+    AngularMomentum,
+}
+
+impl Balance {
+    /// The name in tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Balance::Energy => "energy",
+            Balance::Momentum => "momentum",
+            Balance::AngularMomentum => "angular-momentum",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Balance::Energy => "J",
+            Balance::Momentum => "kg m/s",
+            Balance::AngularMomentum => "kg m^2/s",
+        }
+    }
+}
+
+/// One line of a scene's account.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// What is accounted for.
+    pub balance: Balance,
+    /// Its value: one component for a scalar, three for a vector.
+    pub value: Vec<fx128>,
+    /// Whether the exact motion conserves it.
+    pub conserved: bool,
+}
+
+/// What theory predicts for one method and quantity of a scene, beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theory {
+    /// The order of convergence at the horizon.
+    pub order: ExpectedOrder,
+    /// lim error(T) / h^order, in the quantity's unit / s^order, where known.
+    pub constant: Option<f64>,
+    /// Where it comes from, or why it is not the method's own order.
+    pub reason: &'static str,
+}
+
+/// The order that theory predicts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ExpectedOrder {
+    /// No error but rounding.
+    Exact,
+    /// error ~ h^order.
+    Of(f64),
+}
+
+impl Theory {
+    /// The order that the method has on every smooth problem.
+    pub fn usual(method: MethodId) -> Self {
+        Theory {
+            order: ExpectedOrder::Of(f64::from(method.order())),
+            constant: None,
+            reason: "the method's order on a smooth problem",
+        }
+    }
+
+    /// No error but rounding.
+    pub fn exact(reason: &'static str) -> Self {
+        Theory { order: ExpectedOrder::Exact, constant: None, reason }
+    }
+
+    /// The usual order with a known error constant; a constant of zero would mean a higher order.
+    pub fn with_constant(method: MethodId, constant: f64, reason: &'static str) -> Self {
+        Theory { constant: Some(constant.abs()), reason, ..Self::usual(method) }
+    }
+}
+
+/// How theory says that the error of a balance grows over a long run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedGrowth {
+    /// The law.
+    pub law: Law,
+    /// For a bounded law the bounds of value / start, for an exponential one its rate in 1/s twice.
+    pub bounds: Option<[f64; 2]>,
+    /// Where it comes from.
+    pub reason: &'static str,
+}
+
+/// What every scene states about itself, in no particular arithmetic.
+pub trait Scene: Parameters + Send + Sync {
+    /// Horizon, time scale, source.
+    fn info(&self) -> Info;
+
+    /// Whether the parameters fit together.
+    ///
+    /// # Errors
+    /// What does not, naming the parameter, its value and what is allowed.
+    fn check(&self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Energy and momenta of an observed state.
+    fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry>;
+
+    /// What theory says of a method's error in a quantity at the horizon.
+    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
+        let _ = quantity;
+        Theory::usual(method)
+    }
+
+    /// What theory says of the error of a balance over a long run with the step `h_s`, where it says anything.
+    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
+        let _ = (method, balance, h_s);
+        None
+    }
+}
+
+/// A model with its exact motion in the arithmetic `T`.
+pub trait Motion<T: Single>: Model<T> {
+    /// The exact state at the time `t`, in what the model stores.
+    fn exact(&self, t: T) -> State<Self::Config>;
+    /// What can be seen of a state.
+    fn observe(&self, s: &State<Self::Config>) -> Observation;
+}
+
+/// A rigid body with its exact motion in the arithmetic `T`.
+pub trait RigidMotion<T: Single>: RigidBody<T> {
+    /// The exact motion at the time `t`.
+    fn exact(&self, t: T) -> Kinematics<T, Self::Position>;
+}
+
+impl<T: Single, B: RigidMotion<T>> Motion<T> for WorldOmega<&B> {
+    fn exact(&self, t: T) -> State<Self::Config> {
+        let at = self.0.exact(t);
+        State {
+            q: Pose::new(at.position, at.attitude),
+            v: Twist { linear: at.velocity, angular: at.attitude.rotate(at.omega_body) },
+        }
+    }
+    fn observe(&self, s: &State<Pose<T, Exponential<World>, B::Position>>) -> Observation {
+        Observation::rigid(&s.q, &s.v.linear, s.v.angular)
+    }
+}
+
+/// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
+pub trait AnyScene: Send + Sync {
+    /// The name on the command line and in tables; a preset is `scene/preset`.
+    fn id(&self) -> &'static str;
+
+    /// What it states about itself.
+    fn scene(&self) -> &dyn Scene;
+
+    /// The same, to set its parameters.
+    fn scene_mut(&mut self) -> &mut dyn Scene;
+
+    /// The exact motion, in double-double.
+    fn exact(&self, t: fx128) -> Observation;
+
+    /// Runs one trajectory and observes it at every multiple of `stride` steps, and at the end.
+    fn run(&self, run: &Run, stride: u64) -> Trajectory;
+}
+
+/// Particles, or coordinates of a flat space: the scene is the model.
+pub(crate) struct Particles<S> {
+    pub(crate) id: &'static str,
+    pub(crate) scene: S,
+}
+
+/// A rigid body: the scene is the physics, and a model stores one or another quantity of it.
+pub(crate) struct Rigid<B> {
+    pub(crate) id: &'static str,
+    pub(crate) scene: B,
+}
+
+impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particles<S> {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+    fn scene(&self) -> &dyn Scene {
+        &self.scene
+    }
+    fn scene_mut(&mut self) -> &mut dyn Scene {
+        &mut self.scene
+    }
+    fn exact(&self, t: fx128) -> Observation {
+        self.scene.observe(&self.scene.exact(t))
+    }
+    fn run(&self, run: &Run, stride: u64) -> Trajectory {
+        in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))
+    }
+}
+
+impl<B: Scene + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<fx128>> AnyScene for Rigid<B> {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+    fn scene(&self) -> &dyn Scene {
+        &self.scene
+    }
+    fn scene_mut(&mut self) -> &mut dyn Scene {
+        &mut self.scene
+    }
+    fn exact(&self, t: fx128) -> Observation {
+        let model = WorldOmega::<&B>::new(&self.scene);
+        model.observe(&Motion::<fx128>::exact(&model, t))
+    }
+    fn run(&self, run: &Run, stride: u64) -> Trajectory {
+        let model = WorldOmega::<&B>::new(&self.scene);
+        in_precision!(run.precision, T => run_model::<T, _>(&model, run, stride))
+    }
+}
