@@ -82,3 +82,41 @@ pub fn student_t_95(degrees: usize) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Worked by hand: mean x = 2, S_xx = 10, S_xy = 8, residuals (0.6, -1.2, 0, 1.2, -0.6) with sum of squares 3.6.
+    #[test]
+    fn a_line_has_the_slope_and_errors_of_the_textbook() {
+        let y = [1.0 + 0.6, 1.8 - 1.2, 2.6, 3.4 + 1.2, 4.2 - 0.6];
+        let points: Vec<(f64, f64)> = y.iter().enumerate().map(|(i, y)| (i as f64, *y)).collect();
+        let l = line(&points).expect("five points");
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
+        assert!(near(l.slope, 0.8) && near(l.intercept, 1.0), "{l:?}");
+        assert!(near(l.slope_error, 0.12_f64.sqrt()) && near(l.rms, 0.72_f64.sqrt()), "{l:?}");
+        assert_eq!(l.points, 5);
+        assert!((l.interval()[1] - (0.8 + 3.182_446 * 0.12_f64.sqrt())).abs() < 0.004, "{:?}", l.interval());
+    }
+
+    #[test]
+    fn what_is_no_line_is_none() {
+        assert_eq!(line(&[(0.0, 1.0), (1.0, 2.0)]), None);
+        assert_eq!(line(&[(1.0, 1.0), (1.0, 2.0), (1.0, 3.0)]), None);
+        assert_eq!(line(&[(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0)]), None);
+        assert_eq!(line(&[(0.0, 1.0), (f64::INFINITY, 2.0), (2.0, 3.0)]), None);
+    }
+
+    /// Quantiles of the Handbook of Mathematical Functions, table 26.10, to its three decimals.
+    #[test]
+    fn the_t_quantile_is_that_of_the_tables() {
+        let table =
+            [(1, 12.706), (2, 4.303), (4, 2.776), (5, 2.571), (8, 2.306), (10, 2.228), (30, 2.042), (120, 1.980)];
+        for (degrees, t) in table {
+            assert!((student_t_95(degrees) - t).abs() < 0.001, "{degrees}: {}", student_t_95(degrees));
+        }
+        assert!((student_t_95(3) - 3.182).abs() < 0.002 * 3.182, "{}", student_t_95(3));
+        assert_eq!(student_t_95(0), f64::INFINITY);
+    }
+}

@@ -8,8 +8,10 @@
 mod verdict;
 mod window;
 
+use crate::fit;
 use serde::{Deserialize, Serialize};
 pub use verdict::Verdict;
+use window::{Kind, Search};
 
 /// The error of one run of a step-size sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,3 +68,94 @@ pub struct Order {
     /// The verdict in words, with its numbers.
     pub note: String,
 }
+
+impl Order {
+    fn blank(verdict: Verdict, note: String) -> Self {
+        Self { slope: None, interval: None, window: None, constant: None, floor: None, local: vec![], verdict, note }
+    }
+}
+
+/// The observed order of `samples`, which go from the coarsest step to the finest.
+///
+/// Failed runs, errors that are not finite and saturated errors are never fitted, and none of them can pass. Steps that
+/// are not finite, positive and decreasing give `Failed`.
+pub fn observe(samples: &[Sample], expected: Expected, limits: Limits) -> Order {
+    let steps_are_valid = samples.iter().all(|s| s.h_s.is_finite() && s.h_s > 0.0);
+    if !steps_are_valid || samples.windows(2).any(|w| w[0].h_s <= w[1].h_s) {
+        let note = "the steps must be finite, positive and strictly decreasing: sort the samples by step";
+        return Order::blank(Verdict::Failed, note.to_owned());
+    }
+    let kinds: Vec<Kind> = samples.iter().map(|s| window::kind(s, &limits)).collect();
+    let at_floor = samples.iter().zip(&kinds).filter(|(_, k)| **k == Kind::AtFloor).filter_map(|(s, _)| s.error);
+    let found = Order {
+        floor: at_floor.reduce(f64::max),
+        local: window::local_orders(samples),
+        ..Order::blank(Verdict::NotAsymptotic, String::new())
+    };
+    if expected == Expected::Exact
+        && let Some((verdict, note)) = exactness(samples, &kinds, &limits)
+    {
+        return Order { verdict, note, ..found };
+    }
+    let search = Search { samples, limits: &limits, kinds: &kinds, local: &found.local };
+    match search.window() {
+        Some((window, contradicted)) => in_window(samples, &kinds, expected, window, contradicted, found),
+        None => {
+            let (verdict, note) = verdict::without_window(&kinds);
+            Order { verdict, note, ..found }
+        }
+    }
+}
+
+/// The verdict on a run that should be exact, unless there is an error to be fitted.
+fn exactness(samples: &[Sample], kinds: &[Kind], limits: &Limits) -> Option<(Verdict, String)> {
+    if kinds.contains(&Kind::Failed) {
+        return Some((Verdict::Failed, "a run failed where an exact solution was expected".to_owned()));
+    }
+    let exact = samples.len() >= 3 && samples.iter().all(|s| window::is_exact(s, samples[0].h_s, limits));
+    exact.then(|| (Verdict::Exact, "every error is rounding".to_owned()))
+}
+
+/// The fit over the window, added to what was `found`.
+fn in_window(
+    samples: &[Sample],
+    kinds: &[Kind],
+    expected: Expected,
+    (first, last): (usize, usize),
+    contradicted: bool,
+    found: Order,
+) -> Order {
+    let points: Vec<(f64, f64)> =
+        samples[first..=last].iter().filter_map(|s| Some((s.h_s.ln(), s.error?.ln()))).collect();
+    let Some(line) = fit::line(&points) else {
+        return Order { note: "the window cannot be fitted".to_owned(), ..found };
+    };
+    // The t interval takes the residuals as scatter. Where the local order still drifts they are not, and what is left
+    // of the drift is about the distance of the slope from the finest local order.
+    let drift = found.local[last - 1].map_or(f64::INFINITY, |p| (line.slope - p).abs());
+    let half_width = line.half_width() + drift;
+    let interval = [line.slope - half_width, line.slope + half_width];
+    let (verdict, why) = match contradicted {
+        true if kinds[last + 1..].contains(&Kind::Failed) => (Verdict::Failed, "; but a finer run failed"),
+        true => (Verdict::NotAsymptotic, "; but finer samples above the floor do not follow it"),
+        false => (verdict::of_slope(line.slope, interval, &expected), ""),
+    };
+    let constant = match expected {
+        Expected::Order { order, .. } if verdict == Verdict::AsExpected => {
+            Some((points.iter().map(|(x, y)| y - order * x).sum::<f64>() / points.len() as f64).exp())
+        }
+        _ => None,
+    };
+    let fitted = Order {
+        slope: Some(line.slope),
+        interval: Some(interval),
+        window: Some((first, last)),
+        constant,
+        verdict,
+        ..found
+    };
+    Order { note: verdict::note(&fitted, &expected, why), ..fitted }
+}
+
+#[cfg(test)]
+mod tests;
