@@ -20,6 +20,10 @@ const UNMEASURED_REACH: f64 = 1024.0;
 /// come after four that agree about as well; at a spread of 0.2 they would leave the order uncertain by 0.7.
 const LADDER: [(f64, usize); 6] = [(0.02, 4), (0.05, 4), (0.02, 3), (0.1, 4), (0.1, 3), (0.2, 4)];
 
+/// Up to this spread four points hardly agree by chance: if local orders are anything between -1.5 and 3.5, three of
+/// them do with a probability of 3 (0.05 / 5)^2 = 0.0003.
+const BEYOND_CHANCE: f64 = 0.05;
+
 /// What one sample can contribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -88,7 +92,7 @@ impl Search<'_> {
                 .rev()
                 .filter(|&last| contradicted || !self.contradicted_after(last))
                 .map(|last| (self.longest_before(last, spread), last))
-                .find(|&(first, last)| last + 1 >= first + points && self.trustworthy(first, last))
+                .find(|&(first, last)| last + 1 >= first + points && self.trustworthy(first, last, spread))
         })
     }
 
@@ -118,15 +122,18 @@ impl Search<'_> {
         })
     }
 
-    /// A flat or rising stretch within reach of the floor is the floor. Three points that agree among many that do not
-    /// may be chance, so they must be almost all there is, or the end of a drift that dies away.
-    fn trustworthy(&self, first: usize, last: usize) -> bool {
+    /// A flat or rising stretch within reach of the floor is the floor. Three points, or more that agree only roughly,
+    /// may agree by chance among many that do not: they must be two thirds of all, or the end of a drift that dies away.
+    fn trustworthy(&self, first: usize, last: usize, spread: f64) -> bool {
         let (coarse, fine) = (&self.samples[first], &self.samples[last]);
         let falls = coarse.error > fine.error.map(|e| e * (coarse.h_s / fine.h_s).sqrt());
         if near_floor(coarse, self.limits) && !falls {
             return false;
         }
-        last - first >= 3 || self.points_outside(first, last) <= 1 || self.drift_dies_away(first)
+        let points = last + 1 - first;
+        (points >= 4 && spread <= BEYOND_CHANCE)
+            || 2 * self.points_outside(first, last) <= points
+            || self.drift_dies_away(first)
     }
 
     fn points_outside(&self, first: usize, last: usize) -> usize {
@@ -134,8 +141,8 @@ impl Search<'_> {
         (0..first).chain(last + 1..self.samples.len()).filter(counts).count()
     }
 
-    /// Whether the local orders come into a three-point window by a drift that keeps its sense and shrinks: their last
-    /// two differences before the window (or the only one there is), below 1, and the one inside.
+    /// Whether the local orders come into a window by a drift that keeps its sense and shrinks: their last
+    /// two differences before the window (or the only one there is), below 1, and its first one inside.
     fn drift_dies_away(&self, first: usize) -> bool {
         let usable = self.kinds[..first].iter().rev().take_while(|k| **k == Kind::Usable).count().min(2);
         let orders: Option<Vec<f64>> = self.local[first - usable..first + 2].iter().copied().collect();
