@@ -17,6 +17,8 @@ pub struct Selection {
     pub methods: Vec<MethodId>,
     /// The precisions.
     pub precisions: Vec<Precision>,
+    /// The numbers of steps of a sweep; empty for the halvings that each scene suggests.
+    pub steps: Vec<u64>,
     /// Fewer and shorter runs.
     pub quick: bool,
     /// The bar to be shown.
@@ -39,4 +41,25 @@ pub trait Study {
 
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
+}
+
+/// The palette index of a method: the same in every chart.
+pub fn color_of(method: MethodId) -> usize {
+    MethodId::ALL.iter().position(|m| *m == method).unwrap_or(0)
+}
+
+/// The command that makes a figure of one scene again.
+pub fn command(study: &str, scene: &str) -> String {
+    format!("cargo run --release --bin {study} -- --scene {scene}")
+}
+
+/// The different values, in the order in which they first appear.
+pub fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for value in values {
+        if !seen.contains(&value) {
+            seen.push(value);
+        }
+    }
+    seen
 }

@@ -1,17 +1,23 @@
 //! How wrong is it? The error against the step, and the order observed.
 
+mod figures;
+mod orders;
+
+pub use orders::{Measure, OrderRow, orders, tolerance};
+
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use faer::fx128;
 use integrator::Real;
 use integrator::methods::MethodId;
+use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::observation::{Observation, Quantity};
-use crate::order::{self, Expected, Limits, Sample};
 use crate::run::{Outcome, Precision, Run, Trajectory};
 use crate::scene::{AnyScene, ExpectedOrder};
-use crate::study::Selection;
+use crate::study::{Selection, Study};
 use crate::sweep::in_parallel;
 
 /// Halvings of the step from the coarsest to the finest run.
@@ -54,16 +60,28 @@ pub struct Row {
     pub scale: f64,
     /// Evaluations of the force law.
     pub evaluations: u64,
+    /// The order that theory predicts; empty where it predicts no error but rounding.
+    pub theory_order: Option<f64>,
+    /// lim error_end / h^order that theory predicts, where it does.
+    pub theory_constant: Option<f64>,
 }
 
-/// Where in a run an error is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Measure {
-    /// At the end.
-    End,
-    /// The largest of the run.
-    Max,
+/// The study.
+pub struct Convergence;
+
+impl Study for Convergence {
+    type Row = Row;
+    const ID: &'static str = "convergence";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        measure(selection)
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        figures::figures(rows)
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        orders::claims(rows)
+    }
 }
 
 struct Job<'a> {
@@ -74,15 +92,16 @@ struct Job<'a> {
 }
 
 /// Runs every scene, method and step in every precision.
-pub fn measure(selection: &Selection) -> Vec<Row> {
+fn measure(selection: &Selection) -> Vec<Row> {
     let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
     let exact: Vec<Vec<Observation>> =
         in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| exact_motion(scene.as_ref()));
     let mut jobs = Vec::new();
     for (scene, exact) in selection.scenes.iter().zip(&exact) {
         for &method in &selection.methods {
-            for halving in 0..=halvings {
-                let steps = scene.scene().info().coarsest_steps << halving;
+            let halved = (0..=halvings).map(|k| scene.scene().info().coarsest_steps << k);
+            let all_steps = if selection.steps.is_empty() { halved.collect() } else { selection.steps.clone() };
+            for steps in all_steps {
                 jobs.push(Job { scene: scene.as_ref(), exact, method, steps });
             }
         }
@@ -114,16 +133,20 @@ impl Job<'_> {
         precisions.iter().flat_map(row).collect()
     }
 
-    /// The exact motion at a step; the numbers of steps are powers of two, so that every checkpoint is a step or beyond
-    /// the reach of a coarse run.
-    fn exact_at(&self, step: u64) -> &Observation {
-        &self.exact[(step * CHECKPOINTS / self.steps) as usize]
+    /// The exact motion at a step. Where the number of steps is a power of two the step is a checkpoint.
+    fn exact_at(&self, step: u64) -> Cow<'_, Observation> {
+        if (step * CHECKPOINTS) % self.steps == 0 {
+            Cow::Borrowed(&self.exact[(step * CHECKPOINTS / self.steps) as usize])
+        } else {
+            let end = fx128::lit(self.scene.scene().info().horizon_s);
+            Cow::Owned(self.scene.exact(end * fx128::lit(step as f64) / fx128::lit(self.steps as f64)))
+        }
     }
 
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
-        let errors = largest(run.seen.iter().map(|(step, seen)| seen.distances(self.exact_at(*step))));
+        let errors = largest(run.seen.iter().map(|(step, seen)| seen.distances(&self.exact_at(*step))));
         let rounding = largest(run.seen.iter().zip(&reference.seen).map(|((_, a), (_, b))| a.distances(b)));
-        let end = run.end().map(|seen| seen.distances(self.exact_at(self.steps)));
+        let end = run.end().map(|seen| seen.distances(&self.exact_at(self.steps)));
         let rounding_end = run.end().zip(reference.end()).map(|(a, b)| a.distances(b));
         let pick = |list: &Option<Vec<(Quantity, f64)>>, quantity| {
             list.as_ref()?.iter().find(|(q, _)| *q == quantity).map(|(_, x)| *x).filter(|x| x.is_finite())
@@ -132,7 +155,9 @@ impl Job<'_> {
         let finished = run.outcome == Outcome::Finished;
         let quantities = last.values.iter().map(|(quantity, _)| *quantity);
         quantities
-            .map(|quantity| Row {
+            .map(|quantity| {
+                let theory = self.scene.scene().theory(self.method, quantity);
+                Row {
                 scene: self.scene.id().to_owned(),
                 method: self.method.id().to_owned(),
                 precision,
@@ -148,7 +173,12 @@ impl Job<'_> {
                 rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
                 scale: last.scale(quantity),
                 evaluations: run.evaluations,
-            })
+                theory_order: match theory.order {
+                    ExpectedOrder::Exact => None,
+                    ExpectedOrder::Of(order) => Some(order),
+                },
+                theory_constant: theory.constant,
+            }})
             .collect()
     }
 }

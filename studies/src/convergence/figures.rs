@@ -1,0 +1,105 @@
+//! Charts of the error against the step.
+
+use integrator::methods::MethodId;
+use reports::{Axis, Figure, Layer, Series};
+
+use super::Row;
+use crate::observation::Quantity;
+use crate::run::{Outcome, Precision};
+use crate::study::{color_of, command, distinct};
+
+/// Two charts a scene: all methods in f64 with the rounding floor, and three precisions of the same two methods.
+pub fn figures(rows: &[Row]) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
+        let of_scene: Vec<&Row> = rows.iter().filter(|row| row.scene == scene).collect();
+        let quantities = distinct(of_scene.iter().map(|row| row.quantity));
+        // Position or attitude: the quantity that a reader looks for first, and that no method gets right by chance.
+        let Some(&quantity) = quantities.first() else { continue };
+        let chosen: Vec<&Row> = of_scene.into_iter().filter(|row| row.quantity == quantity).collect();
+        figures.push(methods(scene, quantity, &chosen));
+        figures.push(precisions(scene, quantity, &chosen));
+    }
+    figures
+}
+
+fn axes(quantity: Quantity) -> (Axis, Axis) {
+    let name = match quantity {
+        Quantity::Position => "position",
+        Quantity::Velocity => "velocity",
+        Quantity::Attitude => "angle",
+        Quantity::AngularVelocity => "angular velocity",
+    };
+    (Axis::log("step size h (s)"), Axis::log(format!("{name} error at the end ({})", quantity.unit())))
+}
+
+fn series(name: String, color: usize, rows: &[&Row]) -> Layer {
+    let points = rows.iter().filter_map(|row| Some([row.h_s, row.error_end.filter(|&e| e > 0.0)?])).collect();
+    let failed = rows.iter().filter(|row| row.outcome != Outcome::Finished).map(|row| row.h_s).collect();
+    Layer::Series(Series { failed, ..Series::new(name, color, points) })
+}
+
+fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
+    let precision = [Precision::F64, Precision::DoubleDouble, Precision::F32]
+        .into_iter()
+        .find(|&p| rows.iter().any(|row| row.precision == p))
+        .unwrap_or(Precision::F64);
+    let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.precision == precision).collect();
+    let mut layers = Vec::new();
+    // The median: the rounding of one long run does not stand for all.
+    let mut rounding: Vec<f64> = rows.iter().filter_map(|row| row.rounding_end.filter(|&e| e > 0.0)).collect();
+    rounding.sort_by(f64::total_cmp);
+    if let Some(&y) = rounding.get(rounding.len() / 2) {
+        layers.push(Layer::Floor { y, label: format!("rounding floor ({})", precision.id()) });
+    }
+    for method in MethodId::ALL {
+        let of_method: Vec<&Row> = rows.iter().copied().filter(|row| row.method == method.id()).collect();
+        if !of_method.is_empty() {
+            layers.push(series(method.title().to_owned(), color_of(*method), &of_method));
+        }
+    }
+    for order in [1.0, 2.0, 4.0] {
+        layers.push(Layer::SlopeTriangle { order });
+    }
+    let (x, y) = axes(quantity);
+    Figure {
+        id: format!("convergence-{}-{}", scene.replace('/', "-"), quantity.id()),
+        title: format!("{scene}: error against step, {}", precision.id()),
+        caption: "Halving the step halves the error of a first-order method, quarters that of a second-order one and \
+                  divides that of RK4 by 16, until rounding takes over."
+            .to_owned(),
+        x,
+        y,
+        layers,
+        command: command("convergence", scene),
+        data: "convergence.csv".to_owned(),
+        ..Figure::default()
+    }
+}
+
+fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
+    let mut layers = Vec::new();
+    for (method, first_color) in [(MethodId::SemiImplicitEuler, 0), (MethodId::Rk4, 3)] {
+        for (i, precision) in Precision::ALL.into_iter().enumerate() {
+            let chosen: Vec<&Row> =
+                rows.iter().copied().filter(|r| r.precision == precision && r.method == method.id()).collect();
+            if !chosen.is_empty() {
+                layers.push(series(format!("{}, {}", method.title(), precision.id()), first_color + i, &chosen));
+            }
+        }
+    }
+    let (x, y) = axes(quantity);
+    Figure {
+        id: format!("precision-{}-{}", scene.replace('/', "-"), quantity.id()),
+        title: format!("{scene}: the same step in three precisions"),
+        caption: "f32 and f64 leave the straight line where rounding outweighs the method's error; double-double keeps \
+                  its slope."
+            .to_owned(),
+        x,
+        y,
+        layers,
+        command: command("convergence", scene),
+        data: "convergence.csv".to_owned(),
+        ..Figure::default()
+    }
+}

@@ -1,0 +1,189 @@
+//! From rows to observed orders, and to claims about them.
+
+use reports::{Claim, Verdict as Truth};
+use serde::{Deserialize, Serialize};
+
+use super::Row;
+use crate::observation::Quantity;
+use crate::order::{self, Expected, Limits, Sample, Verdict};
+use crate::run::Precision;
+
+/// Where in a run an error is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// At the end.
+    End,
+    /// The largest of the run.
+    Max,
+}
+
+impl Measure {
+    /// The name in tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Measure::End => "end",
+            Measure::Max => "max",
+        }
+    }
+}
+
+/// The order observed in one sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OrderRow {
+    /// Scene or preset.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// What was compared.
+    pub quantity: Quantity,
+    /// At the end, or the largest of the run.
+    pub measure: Measure,
+    /// The order that theory predicts; empty where it predicts no error but rounding.
+    pub theory_order: Option<f64>,
+    /// The order observed.
+    pub order: Option<f64>,
+    /// Low end of its interval.
+    pub order_low: Option<f64>,
+    /// High end of its interval.
+    pub order_high: Option<f64>,
+    /// Largest step of the window, s.
+    pub window_from_h_s: Option<f64>,
+    /// Smallest step of the window, s.
+    pub window_to_h_s: Option<f64>,
+    /// Runs in the window.
+    pub window_points: Option<usize>,
+    /// error / h^theory_order at the smallest step of the window.
+    pub constant: Option<f64>,
+    /// What theory predicts for it.
+    pub theory_constant: Option<f64>,
+    /// Largest error that is nothing but rounding.
+    pub floor: Option<f64>,
+    /// Unit of floor, and of constant times s^order.
+    pub unit: String,
+    /// What the sweep shows.
+    pub verdict: Verdict,
+    /// The verdict in words.
+    pub note: String,
+}
+
+/// The largest difference from theory's order that is accepted. Rounding bends the fine end of a window in f32 and f64.
+pub fn tolerance(precision: Precision) -> f64 {
+    match precision {
+        Precision::F32 => 0.1,
+        Precision::F64 => 0.05,
+        Precision::DoubleDouble => 0.02,
+    }
+}
+
+/// The observed order of every sweep among the rows, in their order.
+pub fn orders(rows: &[Row]) -> Vec<OrderRow> {
+    let key = |row: &Row| (row.scene.clone(), row.method.clone(), row.precision, row.quantity);
+    let mut keys = Vec::new();
+    let mut sweeps: std::collections::HashMap<_, Vec<&Row>> = std::collections::HashMap::new();
+    for row in rows {
+        let sweep = sweeps.entry(key(row)).or_default();
+        if sweep.is_empty() {
+            keys.push(key(row));
+        }
+        sweep.push(row);
+    }
+    let both = |key| [Measure::End, Measure::Max].map(|measure| order_of(&sweeps[key], measure));
+    keys.iter().flat_map(both).collect()
+}
+
+fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
+    let first = sweep[0];
+    let samples: Vec<Sample> = sweep
+        .iter()
+        .map(|row| {
+            let (error, rounding) = match measure {
+                Measure::End => (row.error_end, row.rounding_end),
+                Measure::Max => (row.error_max, row.rounding_max),
+            };
+            let floor = if row.precision == Precision::DoubleDouble { 0.0 } else { rounding.unwrap_or(0.0) };
+            Sample { h_s: row.h_s, error, floor }
+        })
+        .collect();
+    let tolerance = tolerance(first.precision);
+    let expected = first.theory_order.map_or(Expected::Exact, |order| Expected::Order { order, tolerance });
+    // The scale may vanish where a quantity passes through zero; one unit of it stands in.
+    let scale = if first.scale > 0.0 { first.scale } else { 1.0 };
+    let limits = Limits { rounding_unit: first.precision.epsilon() * scale, saturation: scale };
+    let seen = order::observe(&samples, expected, limits);
+    let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
+    let finest = seen.window.map(|w| if samples[w.0].h_s < samples[w.1].h_s { w.0 } else { w.1 });
+    let constant = finest.zip(first.theory_order).and_then(|(i, p)| Some(samples[i].error? / samples[i].h_s.powf(p)));
+    OrderRow {
+        scene: first.scene.clone(),
+        method: first.method.clone(),
+        precision: first.precision,
+        quantity: first.quantity,
+        measure,
+        theory_order: first.theory_order,
+        order: seen.slope,
+        order_low: seen.interval.map(|i| i[0]),
+        order_high: seen.interval.map(|i| i[1]),
+        window_from_h_s: step(|w| w.0),
+        window_to_h_s: step(|w| w.1),
+        window_points: seen.window.map(|w| w.1 - w.0 + 1),
+        constant,
+        theory_constant: if measure == Measure::End { first.theory_constant } else { None },
+        floor: seen.floor,
+        unit: first.unit.clone(),
+        verdict: seen.verdict,
+        note: seen.note,
+    }
+}
+
+/// One claim a scene and method: the order in double-double is theory's, in every quantity, at the end and at most; and the
+/// error constant where theory knows it.
+pub fn claims(rows: &[Row]) -> Vec<Claim> {
+    let orders = orders(rows);
+    let double: Vec<&OrderRow> = orders.iter().filter(|o| o.precision == Precision::DoubleDouble).collect();
+    let mut claims = Vec::new();
+    for group in double.chunk_by(|a, b| a.scene == b.scene && a.method == b.method) {
+        claims.push(order_claim(group));
+        claims.extend(group.iter().filter_map(|o| constant_claim(o, rows)));
+    }
+    claims
+}
+
+fn order_claim(group: &[&OrderRow]) -> Claim {
+    let first = group[0];
+    let word = |o: &OrderRow| o.order.map_or_else(|| o.verdict.to_string(), |p| format!("{p:.3}"));
+    let measured: Vec<String> =
+        group.iter().map(|o| format!("{} ({}) {}", o.quantity.id(), o.measure.id(), word(o))).collect();
+    let theory = |o: &&OrderRow| o.theory_order.map_or_else(|| "exact".to_owned(), |p| p.to_string());
+    let mut promised: Vec<String> = group.iter().map(theory).collect();
+    promised.dedup();
+    Claim {
+        id: format!("convergence.{}.{}.order", first.scene, first.method),
+        study: "convergence".to_owned(),
+        statement: format!("{} on {} converges with the order of theory", first.method, first.scene),
+        theory: promised.join(", "),
+        measured: measured.join("; "),
+        bound: format!("within {} of theory in double-double", tolerance(Precision::DoubleDouble)),
+        verdict: Truth::from_comparison(group.iter().all(|o| o.verdict.passes())),
+    }
+}
+
+fn constant_claim(o: &OrderRow, rows: &[Row]) -> Option<Claim> {
+    let (theory, measured, h) = (o.theory_constant?, o.constant?, o.window_to_h_s?.min(o.window_from_h_s?));
+    let same = |row: &&Row| row.scene == o.scene && row.method == o.method && row.quantity == o.quantity;
+    let coarsest = rows.iter().filter(same).map(|row| row.h_s).fold(0.0, f64::max);
+    // The next term is smaller by h over a time scale, and the coarsest step resolves that time scale about once.
+    let bound = 4.0 * h / coarsest;
+    let deviation = measured / theory - 1.0;
+    Some(Claim {
+        id: format!("convergence.{}.{}.{}.constant", o.scene, o.method, o.quantity.id()),
+        study: "convergence".to_owned(),
+        statement: format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
+        theory: format!("{theory:.6e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
+        measured: format!("{measured:.6e}"),
+        bound: format!("relative difference at most {bound:.1e}, the next term at h = {h:.2e} s"),
+        verdict: Truth::from_comparison(deviation.abs() <= bound),
+    })
+}
