@@ -78,11 +78,18 @@ fn drift() -> Figure {
     let theory = Layer::Curve { name: "theory, t h⁴".to_owned(), points: grow(&|t| 1.4e-9 * t), color: None };
     let band = Layer::Band { axis: AxisName::X, from: 100.0, to: 300.0, label: "window of the fit".to_owned() };
     let layers = vec![band, Layer::Series(euler), Layer::Series(semi), Layer::Series(rk4), theory];
-    figure("drift", "Energy error over a thousand seconds", Axis::linear("time t (s)"), Axis::log("|E − E₀| / E₀"), layers)
+    figure(
+        "drift",
+        "Energy error over a thousand seconds",
+        Axis::linear("time t (s)"),
+        Axis::log("|E − E₀| / E₀"),
+        layers,
+    )
 }
 
 fn linear() -> Figure {
-    let wave = |a: f64| (0..80).map(move |i| f64::from(i) * 0.25).map(|t| [t, a * (t * 0.9).sin() * 1e-5]).collect::<Vec<_>>();
+    let wave =
+        |a: f64| (0..80).map(move |i| f64::from(i) * 0.25).map(|t| [t, a * (t * 0.9).sin() * 1e-5]).collect::<Vec<_>>();
     let mut layers: Vec<Layer> =
         (0..3).map(|i| Layer::Series(Series::new(METHODS[i].0, i, wave(1.0 + i as f64 * 0.02)))).collect();
     layers.push(Layer::Guide { axis: AxisName::Y, at: 0.0, label: "exact".to_owned() });
@@ -95,7 +102,13 @@ fn stability() -> Figure {
     let at = |i: usize, n: usize, a: f64, b: f64| a + (b - a) * (i as f64 + 0.5) / n as f64;
     let kind = |i: usize| {
         let (x, y) = (at(i % nx, nx, 0.0, 3.0), at(i / nx, ny, 0.0, 1.5));
-        if x > 2.8 && y > 1.2 { None } else if x * x + 2.0 * x * y < 4.0 { Some(if y > 0.9 { 1.0 } else { 0.0 }) } else { Some(2.0) }
+        if x > 2.8 && y > 1.2 {
+            None
+        } else if x * x + 2.0 * x * y < 4.0 {
+            Some(if y > 0.9 { 1.0 } else { 0.0 })
+        } else {
+            Some(2.0)
+        }
     };
     let names = ["stable", "damped", "unstable"].map(str::to_owned).to_vec();
     let palette = Palette::Categories { names };
@@ -103,7 +116,8 @@ fn stability() -> Figure {
     let limit = (0..100).map(|i| at(i, 100, 0.0, 1.5)).map(|y| [-y + (y * y + 4.0).sqrt(), y]).collect();
     let theory = Layer::Curve { name: "theory".to_owned(), points: limit, color: None };
     let title = "Stability of semi-implicit Euler with damping";
-    let layers = vec![Layer::Cells(cells), theory, Layer::Guide { axis: AxisName::X, at: 2.0, label: "h ω = 2".to_owned() }];
+    let layers =
+        vec![Layer::Cells(cells), theory, Layer::Guide { axis: AxisName::X, at: 2.0, label: "h ω = 2".to_owned() }];
     figure("stability", title, Axis::linear("h ω"), Axis::linear("damping ratio ζ"), layers)
 }
 
@@ -114,17 +128,33 @@ fn radius() -> Figure {
         Some(10_f64.powf(-6.0 * x * (1.0 - 0.5 * y)))
     };
     let palette = Palette::Sequential { label: "relative error of the energy".to_owned(), scale: Scale::Log };
-    let cells = Cells { x0: 1e-3, x1: 10.0, nx, y0: 0.0, y1: 1.0, ny, values: (0..nx * ny).map(value).collect(), palette };
-    figure("radius", "A map on a logarithmic axis", Axis::log("h ω"), Axis::linear("eccentricity e"), vec![Layer::Cells(cells)])
+    let cells =
+        Cells { x0: 1e-3, x1: 10.0, nx, y0: 0.0, y1: 1.0, ny, values: (0..nx * ny).map(value).collect(), palette };
+    figure(
+        "radius",
+        "A map on a logarithmic axis",
+        Axis::log("h ω"),
+        Axis::linear("eccentricity e"),
+        vec![Layer::Cells(cells)],
+    )
 }
 
 fn empty() -> Figure {
-    let nothing = Series { failed: vec![0.1, 0.2], ..Series::new("explicit Euler", 0, vec![[1.0, f64::NAN], [f64::INFINITY, 2.0]]) };
+    let nothing = Series {
+        failed: vec![0.1, 0.2],
+        ..Series::new("explicit Euler", 0, vec![[1.0, f64::NAN], [f64::INFINITY, 2.0]])
+    };
     figure("empty", "Every run failed", Axis::log("h (s)"), Axis::log("error (m)"), vec![Layer::Series(nothing)])
 }
 
 fn many() -> Figure {
     let one = |i: usize| Series::new(format!("variant {i} of the method"), i, errors(1.0 + 0.3 * i as f64, 1.0, 1e-14));
     let layers = (0..11).map(|i| Layer::Series(one(i))).collect();
-    figure("many", "More series than can be named beside their ends", Axis::log("h (s)"), Axis::log("error (m)").with_range(1e-10, 1e-1), layers)
+    figure(
+        "many",
+        "More series than can be named beside their ends",
+        Axis::log("h (s)"),
+        Axis::log("error (m)").with_range(1e-10, 1e-1),
+        layers,
+    )
 }

@@ -101,7 +101,7 @@ fn pad_log([low, high]: [f64; 2]) -> [f64; 2] {
 
 /// Ends that differ enough to be told apart, and little enough for their difference to be finite.
 fn apart([low, high]: [f64; 2]) -> [f64; 2] {
-    let (low, high) = (low.max(-f64::MAX / 8.0), high.min(f64::MAX / 8.0));
+    let [low, high] = [low, high].map(|end| end.clamp(-f64::MAX / 8.0, f64::MAX / 8.0));
     let least = (1e-12 * low.abs().max(high.abs())).max(1e-290);
     if high - low >= least { [low, high] } else { [low - least, high + least] }
 }

@@ -28,7 +28,11 @@ pub(super) fn check(cells: &Cells) -> Result<(), String> {
     if let Palette::Categories { names } = &cells.palette {
         let kind = |v: f64| v >= 0.0 && v.fract() == 0.0 && v < names.len() as f64;
         if let Some(bad) = cells.values.iter().flatten().find(|v| !kind(**v)) {
-            return Err(format!("value {bad} names none of the {} kinds (0 to {})", names.len(), names.len().max(1) - 1));
+            return Err(format!(
+                "value {bad} names none of the {} kinds (0 to {})",
+                names.len(),
+                names.len().max(1) - 1
+            ));
         }
     }
     Ok(())
@@ -64,9 +68,9 @@ fn colors(cells: &Cells) -> Vec<RGBColor> {
     };
     let color = |value: f64| match (&cells.palette, &axis) {
         (Palette::Categories { .. }, _) => category(value as usize),
-        (Palette::Sequential { .. }, Some(axis)) => axis
-            .map_value(value)
-            .map_or(EMPTY, |m| sequential((axis.fraction(m) * LEVELS).round() / LEVELS)),
+        (Palette::Sequential { .. }, Some(axis)) => {
+            axis.map_value(value).map_or(EMPTY, |m| sequential((axis.fraction(m) * LEVELS).round() / LEVELS))
+        }
         (Palette::Sequential { .. }, None) => EMPTY,
     };
     cells.values.iter().map(|value| value.map_or(EMPTY, color)).collect()
@@ -99,7 +103,7 @@ pub(super) fn draw(canvas: &Canvas<'_>, cells: &Cells) -> Drawn {
     Ok(())
 }
 
-/// One run of equal cells. It reaches half a pixel under its right and lower neighbours, which are drawn later, so that
+/// One run of equal cells. It reaches a pixel under its right and lower neighbours, which are drawn later, so that
 /// no light seam shows between them.
 fn run(canvas: &Canvas<'_>, x: [i32; 2], y: [i32; 2], color: RGBColor) -> Drawn {
     let area = canvas.frame.area;
@@ -107,7 +111,7 @@ fn run(canvas: &Canvas<'_>, x: [i32; 2], y: [i32; 2], color: RGBColor) -> Drawn 
     if left == right || top == bottom {
         return Ok(());
     }
-    let lap = units(0.5);
+    let lap = units(1.0);
     let rect = Rect { left, top, right: (right + lap).min(area.right), bottom: (bottom + lap).min(area.bottom) };
     canvas.rect(rect, color.filled())
 }

@@ -25,7 +25,8 @@ pub(super) fn clip_segment(a: Point, b: Point, window: Window) -> Option<[Point;
     // A quarter of every length is taken, so that the difference of two huge coordinates stays finite.
     const QUARTER: f64 = 0.25;
     let step = [0, 1].map(|i| QUARTER * b[i] - QUARTER * a[i]);
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    // Where along the segment it enters and leaves, and the coordinate that is then on the edge.
+    let (mut enter, mut leave) = (Cut::at(0.0), Cut::at(1.0));
     for i in 0..2 {
         let to_low = QUARTER * window.low[i] - QUARTER * a[i];
         let to_high = QUARTER * window.high[i] - QUARTER * a[i];
@@ -35,16 +36,34 @@ pub(super) fn clip_segment(a: Point, b: Point, window: Window) -> Option<[Point;
             }
             continue;
         }
-        let (first, last) = if step[i] > 0.0 { (to_low, to_high) } else { (to_high, to_low) };
-        enter = enter.max(first / step[i]);
-        leave = leave.min(last / step[i]);
+        let low = Cut { along: to_low / step[i], edge: Some((i, window.low[i])) };
+        let high = Cut { along: to_high / step[i], edge: Some((i, window.high[i])) };
+        let (first, last) = if step[i] > 0.0 { (low, high) } else { (high, low) };
+        enter = if first.along > enter.along { first } else { enter };
+        leave = if last.along < leave.along { last } else { leave };
     }
-    if enter > leave {
-        return None;
+    (enter.along <= leave.along)
+        .then(|| [enter.point(a, b, window).unwrap_or(a), leave.point(a, b, window).unwrap_or(b)])
+}
+
+/// A place along a segment, 0 to 1, and the edge of the window met there: coordinate and value.
+#[derive(Clone, Copy)]
+struct Cut {
+    along: f64,
+    edge: Option<(usize, f64)>,
+}
+
+impl Cut {
+    fn at(along: f64) -> Self {
+        Self { along, edge: None }
     }
-    // The clamp removes the last bit of rounding on the edge that was cut; it moves nothing else.
-    let at = |s: f64| [0, 1].map(|i| (a[i] * (1.0 - s) + b[i] * s).clamp(window.low[i], window.high[i]));
-    Some([if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b }])
+
+    /// The point of the cut, exactly on its edge; `None` where the segment was not cut.
+    fn point(self, a: Point, b: Point, window: Window) -> Option<Point> {
+        let (axis, value) = self.edge?;
+        let between = |i: usize| (a[i] * (1.0 - self.along) + b[i] * self.along).clamp(window.low[i], window.high[i]);
+        Some([0, 1].map(|i| if i == axis { value } else { between(i) }))
+    }
 }
 
 /// The visible parts of a line through `points`; a `None` breaks the line and is not bridged.

@@ -88,14 +88,15 @@ fn right_end(canvas: &Canvas<'_>, entry: &Entry<'_>) -> Option<Pixel> {
     on_line.chain(layers::shown(canvas, entry.points)).max_by_key(|&(x, _)| x)
 }
 
-/// A thin line from a right end near the frame's edge to a name that had to move.
+/// A thin line from a right end near the edge of the frame to a name that had to move.
 fn leader(canvas: &Canvas<'_>, end: Pixel, (x, y): Pixel, color: RGBColor) -> Drawn {
     let area = canvas.frame.area;
     let near = area.right - end.0 < (area.right - area.left) / 8;
     if !near || (end.1 - y).abs() <= units(3.0) {
         return Ok(());
     }
-    canvas.line(vec![(area.right + units(1.0), end.1), (x - units(2.0), y)], stroke(color.mix(0.55), 0.75))
+    let bend = area.right.max(end.0 + units(6.0));
+    canvas.line(vec![(end.0 + units(6.0), end.1), (bend, end.1), (x - units(2.0), y)], stroke(color.mix(0.55), 0.75))
 }
 
 fn sample(canvas: &Canvas<'_>, entry: &Entry<'_>, (x, y): Pixel) -> Drawn {

@@ -63,7 +63,8 @@ pub(super) fn stripe(canvas: &Canvas<'_>, axis: AxisName, [from, to]: [f64; 2]) 
 }
 
 fn floor(canvas: &Canvas<'_>, y: f64) -> Drawn {
-    let Some(area) = canvas.frame.y.map_value(y).and_then(|_| stripe(canvas, AxisName::Y, [f64::NEG_INFINITY, y])) else {
+    let Some(area) = canvas.frame.y.map_value(y).and_then(|_| stripe(canvas, AxisName::Y, [f64::NEG_INFINITY, y]))
+    else {
         return Ok(());
     };
     canvas.rect(area, RGBColor(110, 110, 110).mix(0.13).filled())?;
@@ -119,7 +120,11 @@ fn whiskers(canvas: &Canvas<'_>, series: &Series, color: RGBColor) -> Drawn {
     let frame = &canvas.frame;
     for ([x, _], [low, high]) in series.points.iter().zip(&series.whiskers) {
         // A whisker that reaches zero on a log axis reaches the edge of the frame.
-        let bottom = if *low <= 0.0 && high.is_finite() { frame.y.map_value(*low).or(Some(frame.y.low)) } else { frame.y.map_value(*low) };
+        let bottom = if *low <= 0.0 && high.is_finite() {
+            frame.y.map_value(*low).or(Some(frame.y.low))
+        } else {
+            frame.y.map_value(*low)
+        };
         let ends = (frame.x.map_value(*x), bottom, frame.y.map_value(*high));
         let (Some(x), Some(low), Some(high)) = ends else { continue };
         let Some([a, b]) = clip_segment([x, low], [x, high], frame.window()) else { continue };
@@ -141,7 +146,9 @@ pub(super) fn marker_of(series: &Series) -> Option<Marker> {
 
 fn points(canvas: &Canvas<'_>, series: &Series) -> Drawn {
     let Some(marker) = marker_of(series) else { return Ok(()) };
-    shown(canvas, &series.points).into_iter().try_for_each(|at| markers::draw(canvas, marker, at, palette(series.color)))
+    shown(canvas, &series.points)
+        .into_iter()
+        .try_for_each(|at| markers::draw(canvas, marker, at, palette(series.color)))
 }
 
 /// Distance between two crosses set one under the other, and of the first from the upper edge, in CSS pixels.
@@ -174,5 +181,8 @@ fn failed(canvas: &Canvas<'_>, series: &[&Series]) -> Drawn {
     }
     let area = canvas.frame.area;
     let (x, y) = (area.right, area.top - units(9.0));
-    canvas.text("× run failed", (x, y), 11.5, GREY, super::canvas::RIGHT)
+    let words = "run failed";
+    let mark = x - units(super::canvas::text_width(words, 11.5) + 9.0);
+    markers::draw_failed(canvas, (mark, y), GREY)?;
+    canvas.text(words, (x, y), 11.5, GREY, super::canvas::RIGHT)
 }

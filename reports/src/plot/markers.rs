@@ -25,12 +25,11 @@ pub(super) fn draw(canvas: &Canvas<'_>, marker: Marker, at: Pixel, color: RGBCol
     }
 }
 
-/// The cross that stands for a run that failed.
+/// The cross in a ring that stands for a run that failed: no series has this shape.
 pub(super) fn draw_failed(canvas: &Canvas<'_>, at: Pixel, color: RGBColor) -> Drawn {
-    for (width, ink) in [(5.0, WHITE), (2.2, color)] {
-        bars(canvas, at, 4.2, &[0.25, 0.75], stroke(ink, width))?;
-    }
-    Ok(())
+    canvas.root.draw(&Circle::new(at, units(5.6), WHITE.filled()))?;
+    canvas.root.draw(&Circle::new(at, units(4.8), stroke(color, 1.3)))?;
+    bars(canvas, at, 4.6, &[0.25, 0.75], stroke(color, 1.6))
 }
 
 fn strokes(canvas: &Canvas<'_>, at: Pixel, color: RGBColor, turns: &[f64]) -> Drawn {
@@ -79,8 +78,10 @@ mod tests {
 
     #[test]
     fn no_two_filled_shapes_are_the_same() {
-        let shapes = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::InvertedTriangle, Marker::Star];
-        let drawn: std::collections::HashSet<_> = shapes.map(|m| corners((0, 0), &outline(m), RADIUS)).into_iter().collect();
+        let shapes =
+            [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::InvertedTriangle, Marker::Star];
+        let drawn: std::collections::HashSet<_> =
+            shapes.map(|m| corners((0, 0), &outline(m), RADIUS)).into_iter().collect();
         assert_eq!(drawn.len(), shapes.len());
     }
 }

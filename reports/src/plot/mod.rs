@@ -38,7 +38,8 @@ const LINE_HEIGHT: f64 = 22.0;
 /// [`Error::Figure`] when a range is empty, the figure is too small or a map has the wrong number of cells;
 /// [`Error::Drawing`] when the drawing library refuses.
 pub fn svg(figure: &Figure) -> Result<String, Error> {
-    let refuse = |place: &str, message: String| Error::Figure { figure: figure.id.clone(), place: place.to_owned(), message };
+    let refuse =
+        |place: &str, message: String| Error::Figure { figure: figure.id.clone(), place: place.to_owned(), message };
     if figure.width.min(figure.height) < 200 || figure.width.max(figure.height) > 10_000 {
         return Err(refuse("size", format!("{} by {}: expected 200 to 10000", figure.width, figure.height)));
     }
@@ -52,7 +53,8 @@ pub fn svg(figure: &Figure) -> Result<String, Error> {
     canvas::prepare_font().map_err(failed)?;
     let mut drawing = String::new();
     let size = (figure.width * UNITS as u32, figure.height * UNITS as u32);
-    draw(figure, SVGBackend::with_string(&mut drawing, size), x, y, any_x && any_y).map_err(|e| failed(e.to_string()))?;
+    draw(figure, SVGBackend::with_string(&mut drawing, size), x, y, any_x && any_y)
+        .map_err(|e| failed(e.to_string()))?;
     Ok(finish(figure, &drawing))
 }
 
@@ -87,7 +89,9 @@ fn extent(figure: &Figure) -> Extent {
             }
             // Theory may run off the chart; what was measured decides how much is shown.
             Layer::Curve { points, .. } if !measured => add_points(&mut all, figure, points),
-            Layer::Floor { y, .. } => all.y.extend([*y, if figure.y.scale == crate::Scale::Log { y / 10.0 } else { *y }]),
+            Layer::Floor { y, .. } => {
+                all.y.extend([*y, if figure.y.scale == crate::Scale::Log { y / 10.0 } else { *y }])
+            }
             Layer::Guide { axis: crate::AxisName::X, at, .. } => all.x.push(*at),
             Layer::Guide { axis: crate::AxisName::Y, at, .. } => all.y.push(*at),
             Layer::Cells(cells) => {
@@ -114,14 +118,18 @@ fn draw(figure: &Figure, backend: SVGBackend<'_>, x: AxisMap, y: AxisMap, any: b
     root.fill(&WHITE)?;
     let width = f64::from(figure.width);
     let title = wrap(&figure.title, TITLE, width - 32.0);
-    let top = 20.0 + LINE_HEIGHT * title.len() as f64;
+    let top = 24.0 + LINE_HEIGHT * title.len() as f64;
     let height = f64::from(figure.height) - top - 58.0;
-    let y = y.with_ticks((height / 30.0) as usize);
+    let y = y.with_ticks((height / if figure.y.scale == crate::Scale::Log { 30.0 } else { 44.0 }) as usize);
     let tick_width = y.major.iter().map(|tick| text_width(&tick.label, TICK)).fold(0.0, f64::max);
     let (left, right) = (44.0 + tick_width, labels::margin(figure));
     let x = fitting(x, width - left - right);
     for (i, line) in title.iter().enumerate() {
-        root.draw(&Text::new(line.clone(), (units(16.0), units(24.0 + LINE_HEIGHT * i as f64)), font(TITLE).color(&INK).pos(LEFT)))?;
+        root.draw(&Text::new(
+            line.clone(),
+            (units(16.0), units(24.0 + LINE_HEIGHT * i as f64)),
+            font(TITLE).color(&INK).pos(LEFT),
+        ))?;
     }
     let mut chart = ChartBuilder::on(&root)
         .margin_top(units(top))
@@ -205,7 +213,7 @@ fn finish(figure: &Figure, drawing: &str) -> String {
         height * UNITS as u32,
         escape(&figure.title),
         escape(&figure.caption),
-        printable(body)
+        printable(body).replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "")
     )
 }
 

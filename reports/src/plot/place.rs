@@ -4,6 +4,7 @@ use super::canvas::{CENTER, Canvas, Drawn, GREY, INK, LEFT, Pixel, Rect, UNITS, 
 use super::layers;
 use crate::{AxisName, Figure, Layer, Scale};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, WHITE};
 
 const SIZE: f64 = 12.0;
 
@@ -26,7 +27,11 @@ pub(super) fn draw(canvas: &Canvas<'_>, figure: &Figure) -> Drawn {
         match layer {
             Layer::Text { at, text } => words_at(canvas, *at, text, &mut taken)?,
             Layer::Floor { y, label } => {
-                let stripe = canvas.frame.y.map_value(*y).and_then(|_| layers::stripe(canvas, AxisName::Y, [f64::NEG_INFINITY, *y]));
+                let stripe = canvas
+                    .frame
+                    .y
+                    .map_value(*y)
+                    .and_then(|_| layers::stripe(canvas, AxisName::Y, [f64::NEG_INFINITY, *y]));
                 stripe.map_or(Ok(()), |area| words_in(canvas, area, AxisName::Y, label, &mut taken))?;
             }
             Layer::Band { axis, from, to, label } => {
@@ -85,7 +90,9 @@ fn words_at(canvas: &Canvas<'_>, at: [f64; 2], text: &str, taken: &mut Taken) ->
     let width = units(text_width(text, SIZE));
     let x = x.min(area.right - width - units(4.0)).max(area.left + units(4.0));
     let y = y.clamp(area.top + units(9.0), area.bottom - units(9.0));
-    taken.boxes.push(Rect::of_text((x, y), text_width(text, SIZE), 15.0, HPos::Left));
+    let around = Rect::of_text((x - units(2.0), y), text_width(text, SIZE) + 4.0, 15.0, HPos::Left);
+    taken.boxes.push(around);
+    canvas.rect(around, WHITE.mix(0.8).filled())?;
     canvas.text(text, (x, y), SIZE, INK, LEFT)
 }
 
@@ -94,7 +101,9 @@ fn words_in(canvas: &Canvas<'_>, stripe: Rect, axis: AxisName, text: &str, taken
     let width = text_width(text, SIZE);
     let across = units(width / 2.0 + 8.0);
     let columns: Vec<i32> = match axis {
-        AxisName::Y => (0..=8).map(|i| stripe.left + across + (stripe.right - stripe.left - 2 * across) * i / 8).collect(),
+        AxisName::Y => {
+            (0..=8).map(|i| stripe.left + across + (stripe.right - stripe.left - 2 * across) * i / 8).collect()
+        }
         AxisName::X => vec![(stripe.left + stripe.right) / 2],
     };
     let rows: Vec<i32> = match axis {
@@ -102,7 +111,9 @@ fn words_in(canvas: &Canvas<'_>, stripe: Rect, axis: AxisName, text: &str, taken
             let low = stripe.bottom - units(11.0);
             vec![(stripe.top + units(11.0)).min(low), low, (stripe.top + stripe.bottom) / 2]
         }
-        AxisName::X => (0..=12).map(|i| stripe.top + units(24.0) + (stripe.bottom - stripe.top - units(48.0)) * i / 12).collect(),
+        AxisName::X => {
+            (0..=12).map(|i| stripe.top + units(24.0) + (stripe.bottom - stripe.top - units(48.0)) * i / 12).collect()
+        }
     };
     let spots = rows.into_iter().flat_map(|y| columns.iter().map(move |&x| (x, y)));
     best(canvas, text, spots, taken)
@@ -200,13 +211,23 @@ fn triangle(canvas: &Canvas<'_>, figure: &Figure, order: f64, taken: &mut Taken)
         let over = taken.points.iter().filter(|&&p| t.touches(p)).count();
         over + 50 * taken.boxes.iter().filter(|other| other.overlaps(&t.bounds())).count()
     };
-    let room = Rect { left: frame.area.left + 8, top: frame.area.top + units(20.0), right: frame.area.right - 8, bottom: frame.area.bottom - 8 };
+    let room = Rect {
+        left: frame.area.left + 8,
+        top: frame.area.top + units(20.0),
+        right: frame.area.right - 8,
+        bottom: frame.area.bottom - 8,
+    };
     let fits = candidates(canvas, figure, order, width, height).into_iter().filter(|t| t.bounds().inside(&room));
     let Some(best) = fits.min_by_key(cost) else { return Ok(()) };
     let [a, b, c] = best.corners();
     canvas.line(vec![a, b, c, a, b], stroke(INK, 1.0))?;
     let bounds = best.bounds();
-    taken.boxes.push(Rect { left: bounds.left - 8, right: bounds.right + 8, top: bounds.top - 24, bottom: bounds.bottom + 24 });
+    taken.boxes.push(Rect {
+        left: bounds.left - 8,
+        right: bounds.right + 8,
+        top: bounds.top - 24,
+        bottom: bounds.bottom + 24,
+    });
     canvas.text(&number(order), best.number(), SIZE, INK, Pos::new(HPos::Center, VPos::Center))
 }
 
@@ -230,8 +251,13 @@ fn candidates(canvas: &Canvas<'_>, figure: &Figure, order: f64, width: i32, heig
         }
     }
     let area = canvas.frame.area;
-    let grid = |i: i32, j: i32| (area.left + (area.right - area.left) * i / 16, area.top + (area.bottom - area.top) * j / 16);
-    spots.extend((1..16).rev().flat_map(|j| (1..16).rev().map(move |i| Triangle { start: grid(i, j), width, height, below: true })));
+    let grid =
+        |i: i32, j: i32| (area.left + (area.right - area.left) * i / 16, area.top + (area.bottom - area.top) * j / 16);
+    spots.extend(
+        (1..16)
+            .rev()
+            .flat_map(|j| (1..16).rev().map(move |i| Triangle { start: grid(i, j), width, height, below: true })),
+    );
     spots
 }
 

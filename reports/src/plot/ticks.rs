@@ -134,7 +134,10 @@ mod tests {
     #[test]
     fn labels_thin_out_to_what_fits_and_the_rest_become_minor_ticks() {
         let (major, minor) = log(-32.0, 1.0, 12);
-        assert_eq!(labels(&major), ["10⁻³⁰", "10⁻²⁷", "10⁻²⁴", "10⁻²¹", "10⁻¹⁸", "10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
+        assert_eq!(
+            labels(&major),
+            ["10⁻³⁰", "10⁻²⁷", "10⁻²⁴", "10⁻²¹", "10⁻¹⁸", "10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]
+        );
         assert_eq!(major.len() + minor.len(), 34);
     }
 
@@ -153,10 +156,16 @@ mod tests {
 
     #[test]
     fn linear_labels_carry_the_digits_their_step_needs() {
-        assert_eq!(labels(&linear(-0.5, 1.0, 5)), ["−0.5", "0.0", "0.5", "1.0"].map(|l| if l == "0.0" { "0" } else { l }));
+        assert_eq!(
+            labels(&linear(-0.5, 1.0, 5)),
+            ["−0.5", "0.0", "0.5", "1.0"].map(|l| if l == "0.0" { "0" } else { l })
+        );
         assert_eq!(labels(&linear(0.0, 2e-7, 4)), ["0", "0.5×10⁻⁷", "1.0×10⁻⁷", "1.5×10⁻⁷", "2.0×10⁻⁷"]);
         assert_eq!(labels(&linear(0.0, 100.0, 6)), ["0", "20", "40", "60", "80", "100"]);
-        assert_eq!(labels(&linear(0.0, 3e6, 4)), ["0", "1×10⁶", "2×10⁶", "3×10⁶"].map(|l| if l == "1×10⁶" { "10⁶" } else { l }));
+        assert_eq!(
+            labels(&linear(0.0, 3e6, 4)),
+            ["0", "1×10⁶", "2×10⁶", "3×10⁶"].map(|l| if l == "1×10⁶" { "10⁶" } else { l })
+        );
     }
 
     #[test]
