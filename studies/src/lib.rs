@@ -8,6 +8,7 @@
 
 #[macro_use]
 pub mod run;
+pub mod cli;
 pub mod convergence;
 pub mod drift;
 pub mod error;

@@ -75,11 +75,7 @@ impl Observation {
         Self::pair(Quantity::Attitude, Quantity::AngularVelocity, s)
     }
 
-    fn pair<T: Single, const R: usize, const C: usize>(
-        q: Quantity,
-        v: Quantity,
-        s: &State<SMatrix<T, R, C>>,
-    ) -> Self {
+    fn pair<T: Single, const R: usize, const C: usize>(q: Quantity, v: Quantity, s: &State<SMatrix<T, R, C>>) -> Self {
         Observation { values: vec![(q, vector(&s.q)), (v, vector(&s.v))], norm_error: 0.0 }
     }
 

@@ -123,6 +123,17 @@ pub struct ExpectedGrowth {
     pub reason: &'static str,
 }
 
+/// The largest step with which a method does not fail on a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StabilityLimit {
+    /// Every step fails, sooner or later.
+    NoStep,
+    /// Steps below this fail not, steps above do; s.
+    Below(f64),
+    /// No step fails.
+    Unlimited,
+}
+
 /// What every scene states about itself, in no particular arithmetic.
 pub trait Scene: Parameters + Send + Sync {
     /// Horizon, time scale, source.
@@ -148,6 +159,12 @@ pub trait Scene: Parameters + Send + Sync {
     /// What theory says of the error of a balance over a long run with the step `h_s`, where it says anything.
     fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
         let _ = (method, balance, h_s);
+        None
+    }
+
+    /// The largest stable step of a method and where the formula comes from, where theory says anything.
+    fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
+        let _ = method;
         None
     }
 }
@@ -220,7 +237,7 @@ impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particle
         &mut self.scene
     }
     fn exact(&self, t: fx128) -> Observation {
-        self.scene.observe(&self.scene.exact(t))
+        Motion::<fx128>::observe(&self.scene, &self.scene.exact(t))
     }
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))

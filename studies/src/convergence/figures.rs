@@ -9,7 +9,7 @@ use crate::run::{Outcome, Precision};
 use crate::study::{color_of, command, distinct};
 
 /// Two charts a scene: all methods in f64 with the rounding floor, and three precisions of the same two methods.
-pub fn figures(rows: &[Row]) -> Vec<Figure> {
+pub(super) fn figures(rows: &[Row]) -> Vec<Figure> {
     let mut figures = Vec::new();
     for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = rows.iter().filter(|row| row.scene == scene).collect();
@@ -92,9 +92,10 @@ fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
     Figure {
         id: format!("precision-{}-{}", scene.replace('/', "-"), quantity.id()),
         title: format!("{scene}: the same step in three precisions"),
-        caption: "f32 and f64 leave the straight line where rounding outweighs the method's error; double-double keeps \
+        caption:
+            "f32 and f64 leave the straight line where rounding outweighs the method's error; double-double keeps \
                   its slope."
-            .to_owned(),
+                .to_owned(),
         x,
         y,
         layers,

@@ -158,27 +158,28 @@ impl Job<'_> {
             .map(|quantity| {
                 let theory = self.scene.scene().theory(self.method, quantity);
                 Row {
-                scene: self.scene.id().to_owned(),
-                method: self.method.id().to_owned(),
-                precision,
-                steps: self.steps,
-                h_s: self.scene.scene().info().horizon_s / self.steps as f64,
-                quantity,
-                unit: quantity.unit().to_owned(),
-                outcome: run.outcome,
-                failed_step: run.failed_step,
-                error_end: pick(&end, quantity),
-                error_max: if finished { errors.get(&quantity).copied() } else { None },
-                rounding_end: pick(&rounding_end, quantity),
-                rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
-                scale: last.scale(quantity),
-                evaluations: run.evaluations,
-                theory_order: match theory.order {
-                    ExpectedOrder::Exact => None,
-                    ExpectedOrder::Of(order) => Some(order),
-                },
-                theory_constant: theory.constant,
-            }})
+                    scene: self.scene.id().to_owned(),
+                    method: self.method.id().to_owned(),
+                    precision,
+                    steps: self.steps,
+                    h_s: self.scene.scene().info().horizon_s / self.steps as f64,
+                    quantity,
+                    unit: quantity.unit().to_owned(),
+                    outcome: run.outcome,
+                    failed_step: run.failed_step,
+                    error_end: pick(&end, quantity),
+                    error_max: if finished { errors.get(&quantity).copied() } else { None },
+                    rounding_end: pick(&rounding_end, quantity),
+                    rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
+                    scale: last.scale(quantity),
+                    evaluations: run.evaluations,
+                    theory_order: match theory.order {
+                        ExpectedOrder::Exact => None,
+                        ExpectedOrder::Of(order) => Some(order),
+                    },
+                    theory_constant: theory.constant,
+                }
+            })
             .collect()
     }
 }

@@ -55,8 +55,10 @@ pub struct OrderRow {
     pub window_to_h_s: Option<f64>,
     /// Runs in the window.
     pub window_points: Option<usize>,
-    /// error / h^theory_order at the smallest step of the window.
+    /// lim error / h^theory_order, extrapolated linearly from the two smallest steps of the window.
     pub constant: Option<f64>,
+    /// By how much the extrapolation changed it: a bound on what is left.
+    pub constant_change: Option<f64>,
     /// What theory predicts for it.
     pub theory_constant: Option<f64>,
     /// Largest error that is nothing but rounding.
@@ -114,8 +116,18 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     let limits = Limits { rounding_unit: first.precision.epsilon() * scale, saturation: scale };
     let seen = order::observe(&samples, expected, limits);
     let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
-    let finest = seen.window.map(|w| if samples[w.0].h_s < samples[w.1].h_s { w.0 } else { w.1 });
-    let constant = finest.zip(first.theory_order).and_then(|(i, p)| Some(samples[i].error? / samples[i].h_s.powf(p)));
+    let constant = seen.window.zip(first.theory_order).and_then(|(window, p)| {
+        let ratio = |i: usize| Some(samples[i].error? / samples[i].h_s.powf(p));
+        let (fine, next) = if samples[window.0].h_s < samples[window.1].h_s {
+            (window.0, window.0 + 1)
+        } else {
+            (window.1, window.1 - 1)
+        };
+        // c(h) = C + d h + ...: the line through two steps meets h = 0 at C.
+        let slope = (ratio(next)? - ratio(fine)?) / (samples[next].h_s - samples[fine].h_s);
+        let change = -slope * samples[fine].h_s;
+        Some((ratio(fine)? + change, change.abs()))
+    });
     OrderRow {
         scene: first.scene.clone(),
         method: first.method.clone(),
@@ -129,7 +141,8 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         window_from_h_s: step(|w| w.0),
         window_to_h_s: step(|w| w.1),
         window_points: seen.window.map(|w| w.1 - w.0 + 1),
-        constant,
+        constant: constant.map(|c| c.0),
+        constant_change: constant.map(|c| c.1),
         theory_constant: if measure == Measure::End { first.theory_constant } else { None },
         floor: seen.floor,
         unit: first.unit.clone(),
@@ -140,13 +153,13 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
 
 /// One claim a scene and method: the order in double-double is theory's, in every quantity, at the end and at most; and the
 /// error constant where theory knows it.
-pub fn claims(rows: &[Row]) -> Vec<Claim> {
+pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     let orders = orders(rows);
     let double: Vec<&OrderRow> = orders.iter().filter(|o| o.precision == Precision::DoubleDouble).collect();
     let mut claims = Vec::new();
     for group in double.chunk_by(|a, b| a.scene == b.scene && a.method == b.method) {
         claims.push(order_claim(group));
-        claims.extend(group.iter().filter_map(|o| constant_claim(o, rows)));
+        claims.extend(group.iter().filter_map(|o| constant_claim(o)));
     }
     claims
 }
@@ -170,20 +183,20 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
     }
 }
 
-fn constant_claim(o: &OrderRow, rows: &[Row]) -> Option<Claim> {
-    let (theory, measured, h) = (o.theory_constant?, o.constant?, o.window_to_h_s?.min(o.window_from_h_s?));
-    let same = |row: &&Row| row.scene == o.scene && row.method == o.method && row.quantity == o.quantity;
-    let coarsest = rows.iter().filter(same).map(|row| row.h_s).fold(0.0, f64::max);
-    // The next term is smaller by h over a time scale, and the coarsest step resolves that time scale about once.
-    let bound = 4.0 * h / coarsest;
-    let deviation = measured / theory - 1.0;
+fn constant_claim(o: &OrderRow) -> Option<Claim> {
+    let (theory, measured, change) = (o.theory_constant?, o.constant?, o.constant_change?);
+    // Where the next term is of second order, the extrapolation overshoots by two thirds of its change.
+    let bound = change + ROUNDING * theory;
     Some(Claim {
         id: format!("convergence.{}.{}.{}.constant", o.scene, o.method, o.quantity.id()),
         study: "convergence".to_owned(),
         statement: format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
-        theory: format!("{theory:.6e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
-        measured: format!("{measured:.6e}"),
-        bound: format!("relative difference at most {bound:.1e}, the next term at h = {h:.2e} s"),
-        verdict: Truth::from_comparison(deviation.abs() <= bound),
+        theory: format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
+        measured: format!("{measured:.9e}"),
+        bound: format!("+- {bound:.1e}, the change of the last extrapolation"),
+        verdict: Truth::from_comparison((measured - theory).abs() <= bound),
     })
 }
+
+/// Rounding of a constant that is computed in f64 from theory.
+const ROUNDING: f64 = 1e-13;

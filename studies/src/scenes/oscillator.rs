@@ -13,7 +13,7 @@ use nalgebra::Vector1;
 
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
-use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, Theory};
+use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, StabilityLimit, Theory};
 use crate::scenes::parameters::scene_parameters;
 
 scene_parameters! {
@@ -111,11 +111,8 @@ impl Scene for Oscillator {
 
     fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
         let z = self.omega() * h_s;
-        let exponential = |per_step: f64, reason| ExpectedGrowth {
-            law: Law::Exponential,
-            bounds: Some([per_step / h_s; 2]),
-            reason,
-        };
+        let exponential =
+            |per_step: f64, reason| ExpectedGrowth { law: Law::Exponential, bounds: Some([per_step / h_s; 2]), reason };
         let growth = match method {
             MethodId::ExplicitEuler => exponential((z * z).ln_1p(), "E grows by (1 + z^2) a step, z = w h"),
             MethodId::ImplicitEuler => exponential(-(z * z).ln_1p(), "E shrinks by 1 / (1 + z^2) a step, z = w h"),
@@ -133,11 +130,23 @@ impl Scene for Oscillator {
                 bounds: Some(self.verlet_band(h_s)),
                 reason: "v^2 + w^2 (1 - z^2/4) x^2 is conserved",
             },
-            MethodId::ImplicitMidpoint => {
-                ExpectedGrowth { law: Law::AtTheFloor, bounds: None, reason: "quadratic invariants are conserved exactly" }
-            }
+            MethodId::ImplicitMidpoint => ExpectedGrowth {
+                law: Law::AtTheFloor,
+                bounds: None,
+                reason: "quadratic invariants are conserved exactly",
+            },
         };
         (balance == Balance::Energy).then_some(growth)
+    }
+
+    fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
+        let below = |z: f64| StabilityLimit::Below(z / self.omega());
+        Some(match method {
+            MethodId::ExplicitEuler => (StabilityLimit::NoStep, "|R(i z)|^2 = 1 + z^2"),
+            MethodId::SemiImplicitEuler | MethodId::VelocityVerlet => (below(2.0), "sin(theta / 2) = z / 2"),
+            MethodId::Rk4 => (below(8.0_f64.sqrt()), "|R(i z)|^2 = 1 - z^6/72 + z^8/576"),
+            MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => (StabilityLimit::Unlimited, "A-stable"),
+        })
     }
 }
 

@@ -46,7 +46,12 @@ pub(crate) fn account(
 /// Moments of inertia of a body that can exist (none exceeds the sum of the other two), and a quaternion that is not zero.
 pub(crate) fn check(scene: &str, inertia: [f64; 3], attitude: [f64; 4]) -> Result<(), Error> {
     let refuse = |parameter: &str, value: String, expected: &str| {
-        Err(Error::Parameter { scene: scene.to_owned(), parameter: parameter.to_owned(), value, expected: expected.to_owned() })
+        Err(Error::Parameter {
+            scene: scene.to_owned(),
+            parameter: parameter.to_owned(),
+            value,
+            expected: expected.to_owned(),
+        })
     };
     let [a, b, c] = inertia;
     // Flat bodies have equality; sums of decimals may miss it by a rounding.

@@ -1,0 +1,175 @@
+//! The flags that all binaries share, and how they end.
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use integrator::methods::MethodId;
+use reports::{Claim, OutputDir, Table, exit_code};
+
+use crate::error::Error;
+use crate::run::{Precision, method_from_id};
+use crate::scenes;
+use crate::study::{Selection, Study};
+use crate::sweep::Progress;
+
+/// What to run, and where to write it.
+#[derive(Args, Clone, Debug)]
+pub struct Common {
+    /// Scene, or scene/preset, to look at; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub scene: Vec<String>,
+
+    /// Method to look at; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub method: Vec<String>,
+
+    /// Arithmetic: f32, f64 or double-double; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub precision: Vec<String>,
+
+    /// Set a parameter of every chosen scene that has it; may be given again
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+
+    /// Numbers of steps of a sweep, at least 1 each [default: 12 halvings from the scene's coarsest]
+    #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
+    pub steps: Vec<u64>,
+
+    /// Fewer halvings and shorter runs
+    #[arg(long)]
+    pub quick: bool,
+
+    /// Directory for the results
+    #[arg(long, value_name = "DIR", default_value = "target/report")]
+    pub out: PathBuf,
+
+    /// Threads to run on [default: all cores]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+
+    /// No progress and no notes on stderr
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl Common {
+    /// The scenes, methods and precisions that were asked for.
+    ///
+    /// # Errors
+    /// An unknown name, a parameter outside its range, or a number of steps or threads that is zero.
+    pub fn selection(&self, label: &str) -> Result<Selection, Error> {
+        if self.steps.contains(&0) {
+            return Err(plan("--steps", "a run has at least 1 step; give numbers such as 64,128,256"));
+        }
+        if let Some(threads) = self.threads {
+            if threads == 0 {
+                return Err(plan("--threads", "give at least 1, or leave the flag out for all cores"));
+            }
+            // Fails only if a pool exists already, and then its size was chosen by the same flag.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        }
+        let mut chosen = if self.scene.is_empty() {
+            scenes::catalogue()
+        } else {
+            self.scene.iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
+        };
+        self.apply_settings(&mut chosen)?;
+        let label = (!self.quiet && std::io::stderr().is_terminal()).then(|| label.to_owned());
+        Ok(Selection {
+            scenes: chosen,
+            methods: named(&self.method, method_from_id, MethodId::ALL)?,
+            precisions: named(&self.precision, Precision::from_id, &Precision::ALL)?,
+            steps: self.steps.clone(),
+            quick: self.quick,
+            progress: Progress { label },
+        })
+    }
+
+    fn apply_settings(&self, chosen: &mut [Box<dyn crate::scene::AnyScene>]) -> Result<(), Error> {
+        for setting in &self.set {
+            let (name, value) = setting
+                .split_once('=')
+                .ok_or_else(|| plan("--set", &format!("'{setting}' is not of the form NAME=VALUE")))?;
+            let mut refusal = None;
+            let mut taken = false;
+            for scene in chosen.iter_mut() {
+                let id = scene.id();
+                match scene.scene_mut().set(id, name, value) {
+                    Ok(()) => taken = true,
+                    // Another scene may have the parameter; a wrong value is wrong at once.
+                    Err(error @ Error::UnknownName { .. }) => refusal = Some(error),
+                    Err(error) => return Err(error),
+                }
+            }
+            if let (false, Some(error)) = (taken, refusal) {
+                return Err(error);
+            }
+        }
+        chosen.iter().try_for_each(|scene| scene.scene().check())
+    }
+}
+
+fn plan(place: &str, message: &str) -> Error {
+    Error::Plan { place: place.to_owned(), message: message.to_owned() }
+}
+
+/// The values of the given names in the order given, each once; all values if no name is given.
+fn named<V: Copy + PartialEq>(
+    names: &[String],
+    by_name: impl Fn(&str) -> Result<V, Error>,
+    all: &[V],
+) -> Result<Vec<V>, Error> {
+    if names.is_empty() {
+        return Ok(all.to_vec());
+    }
+    Ok(crate::study::distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
+}
+
+/// Runs one study: rows to CSV, figures to SVG, claims to a table on stdout.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run_study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
+    let selection = common.selection(S::ID)?;
+    let out = OutputDir::create(&common.out)?;
+    let rows = S::measure(&selection);
+    out.write(&format!("{}.csv", S::ID), reports::write_csv(&rows)?)?;
+    for figure in S::figures(&rows) {
+        out.write(&format!("{}.svg", figure.id), reports::svg(&figure)?)?;
+    }
+    let claims = S::claims(&rows);
+    out.write(&format!("{}-claims.csv", S::ID), reports::write_csv(&claims)?)?;
+    Ok(claims)
+}
+
+/// The claims as a table on a terminal.
+pub fn claims_table(claims: &[Claim]) -> Table {
+    Table {
+        headers: ["claim", "theory", "measured", "verdict"].map(str::to_owned).to_vec(),
+        align: Vec::new(),
+        rows: claims
+            .iter()
+            .map(|c| {
+                vec![c.id.clone(), c.theory.clone(), c.measured.clone(), format!("{} {}", c.verdict.sign(), c.verdict)]
+            })
+            .collect(),
+    }
+}
+
+/// Prints to stdout; a reader that has gone away is no error.
+pub fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
+
+/// Ends a program: 0 if all claims hold, 1 if one is broken, 2 if the input or the output was wrong.
+pub fn finish(result: Result<Vec<Claim>, Error>) -> ExitCode {
+    match result {
+        Ok(claims) => ExitCode::from(exit_code(&claims)),
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
