@@ -3,7 +3,7 @@
 use reports::{Claim, Verdict as Truth};
 use serde::{Deserialize, Serialize};
 
-use super::Row;
+use super::{HALVINGS, Row};
 use crate::observation::Quantity;
 use crate::order::{self, Expected, Limits, Sample, Verdict};
 use crate::run::Precision;
@@ -67,17 +67,23 @@ pub struct OrderRow {
     pub unit: String,
     /// What the sweep shows.
     pub verdict: Verdict,
+    /// Largest accepted difference from theory_order.
+    pub tolerance: f64,
     /// The verdict in words.
     pub note: String,
 }
 
-/// The largest difference from theory's order that is accepted. Rounding bends the fine end of a window in f32 and f64.
-pub fn tolerance(precision: Precision) -> f64 {
-    match precision {
+/// The largest difference from theory's order that is accepted: 0.02 in double-double after 12 halvings of the step. What
+/// the next term of the error adds to the slope is proportional to the step, so that each halving less doubles it.
+/// Rounding bends the fine end of a window in f32 and f64.
+pub fn tolerance(precision: Precision, runs: usize) -> f64 {
+    let base = match precision {
         Precision::F32 => 0.1,
         Precision::F64 => 0.05,
         Precision::DoubleDouble => 0.02,
-    }
+    };
+    let missing = (HALVINGS as usize + 1).saturating_sub(runs).min(2);
+    base * f64::from(1_u32 << missing)
 }
 
 /// The observed order of every sweep among the rows, in their order.
@@ -109,7 +115,7 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
             Sample { h_s: row.h_s, error, floor }
         })
         .collect();
-    let tolerance = tolerance(first.precision);
+    let tolerance = tolerance(first.precision, sweep.len());
     let expected = first.theory_order.map_or(Expected::Exact, |order| Expected::Order { order, tolerance });
     // The scale may vanish where a quantity passes through zero; one unit of it stands in.
     let scale = if first.scale > 0.0 { first.scale } else { 1.0 };
@@ -147,6 +153,7 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         floor: seen.floor,
         unit: first.unit.clone(),
         verdict: seen.verdict,
+        tolerance,
         note: seen.note,
     }
 }
@@ -178,7 +185,7 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
         statement: format!("{} on {} converges with the order of theory", first.method, first.scene),
         theory: promised.join(", "),
         measured: measured.join("; "),
-        bound: format!("within {} of theory in double-double", tolerance(Precision::DoubleDouble)),
+        bound: format!("within {} of theory in double-double", first.tolerance),
         verdict: Truth::from_comparison(group.iter().all(|o| o.verdict.passes())),
     }
 }
