@@ -287,6 +287,12 @@ impl Single for fx128 {
     }
     fn round(self) -> Self {
         let high = self.0.round();
-        if high == self.0 { fx128::from_f64(high) + fx128::from_f64(self.1.round()) } else { fx128::from_f64(high) }
+        if high == self.0 {
+            return fx128::from_f64(high) + fx128::from_f64(self.1.round());
+        }
+        // Where the high part lies half way, the low part decides.
+        let up = high - self.0;
+        let beyond_half = up.abs() == 0.5 && self.1 * up < 0.0;
+        fx128::from_f64(if beyond_half { high - 2.0 * up } else { high })
     }
 }
