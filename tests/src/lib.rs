@@ -1,1 +1,7 @@
 //! Shared helpers of the tests. The tests themselves are the files of `tests/tests/`.
+
+mod decimal;
+pub mod reference;
+pub mod table;
+
+pub use decimal::parse_fx128;
