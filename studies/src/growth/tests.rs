@@ -78,7 +78,7 @@ fn the_rate_of_exponential_growth_is_measured_even_where_it_looks_linear() {
 #[test]
 fn an_oscillation_is_seen_by_its_envelope() {
     let envelope = |f: fn(f64) -> f64| running_maximum(run(f).iter().map(|s| (s.t_s, s.error)));
-    assert_eq!(classify(&envelope(|t| t.sin()), 0.0).law, Law::Bounded);
+    assert_eq!(classify(&envelope(f64::sin), 0.0).law, Law::Bounded);
     assert_eq!(classify(&envelope(|t| (t / 50.0).sin()), 0.0).law, Law::Bounded);
     assert_eq!(classify(&envelope(|t| t * (0.3 * t).sin()), 0.0).law, Law::Linear);
     assert_eq!(classify(&envelope(|t| t * t * (0.3 * t).sin()), 0.0).law, Law::Quadratic);
@@ -92,6 +92,13 @@ fn a_transient_does_not_hide_the_law() {
     assert_eq!(law(|t| 100.0 + t), Law::Linear, "an offset of a tenth of the end");
     assert_eq!(law(|t| 1.0 + 1e-6 * (0.05 * t).exp()), Law::Exponential);
     assert_eq!(classify(&run(|t| 1e-16 + 1e-12 * (t / 1000.0).powi(2)), 1e-15).law, Law::Quadratic);
+}
+
+#[test]
+fn a_law_that_changes_within_the_decade_is_not_averaged() {
+    assert_ne!(law(|t| (t / 316.0).powf(if t < 316.0 { 1.5 } else { 0.5 })), Law::Linear);
+    assert_ne!(law(|t| (t / 700.0).max(1.0).powf(1.5)), Law::Bounded, "growth that sets in late");
+    assert_eq!(law(|t| if t < 150.0 { 0.0 } else { t }), Law::Linear, "zeros before the growth");
 }
 
 #[test]

@@ -76,8 +76,10 @@ fn three_points_at_the_end_of_a_dying_drift_are_enough() {
 
 #[test]
 fn three_points_that_agree_by_chance_are_not_enough() {
-    for before in [1.7, 0.7] {
-        let o = observe(&from_local_orders(1.0, &[2.7, 0.1, 3.0, -0.4, before, 1.02, 1.0]), order(1.0), CLEAN);
+    let (from_below, from_above) = ([2.7, 0.1, 3.0, -0.4, 0.7, 1.02, 1.0], [2.7, 0.1, 3.0, -0.4, 1.7, 1.02, 1.0]);
+    let drift_that_grows = [0.2, 1.30, 1.25, 1.02, 1.0];
+    for locals in [&from_below[..], &from_above[..], &drift_that_grows[..]] {
+        let o = observe(&from_local_orders(1.0, locals), order(1.0), CLEAN);
         assert_eq!((o.verdict, o.window), (Verdict::NotAsymptotic, None), "{}", o.note);
     }
 }
@@ -106,6 +108,18 @@ fn a_floor_after_four_points_leaves_those_four() {
     assert_eq!((o.verdict, o.window), (Verdict::AsExpected, Some((0, 2))), "{}", o.note);
     let strict = observe(&samples, order(4.0), CLEAN);
     assert!(!strict.verdict.passes(), "without a floor the tail contradicts: {}", strict.note);
+}
+
+/// The last three errors, 31 to 45 units, are within 64 times a floor of one unit, but not of a hundredth of one.
+#[test]
+fn a_bent_tail_is_excused_only_within_reach_of_the_measured_floor() {
+    let mut samples = sweep(10, |h| h * h + if h < 0.005 { 3.0e-5 } else { 0.0 });
+    samples.iter_mut().for_each(|s| s.floor = 1.0e-6);
+    let o = observe(&samples, order(2.0), CLEAN);
+    assert_eq!((o.verdict, o.window), (Verdict::AsExpected, Some((0, 6))), "{}", o.note);
+    samples.iter_mut().for_each(|s| s.floor = 1.0e-8);
+    let o = observe(&samples, order(2.0), CLEAN);
+    assert_eq!(o.verdict, Verdict::NotAsymptotic, "{}", o.note);
 }
 
 #[test]
@@ -146,6 +160,15 @@ fn diverged_and_saturated_coarse_steps_are_left_out() {
     samples[3].error = Some(2.0);
     let o = observe(&samples, order(4.0), Limits { rounding_unit: 0.0, saturation: 1.0 });
     assert_eq!((o.verdict, o.window), (Verdict::AsExpected, Some((4, 9))), "{}", o.note);
+}
+
+/// 8 h falls below the saturation 1 at the fourth sample and reaches 8 floors after the thirteenth.
+#[test]
+fn a_clean_window_reaches_from_saturation_to_the_floor() {
+    let mut samples = sweep(16, |h| 8.0 * h);
+    samples.iter_mut().for_each(|s| s.floor = 1.0e-4);
+    let o = observe(&samples, order(1.0), Limits { rounding_unit: 0.0, saturation: 1.0 });
+    assert_eq!((o.verdict, o.window), (Verdict::AsExpected, Some((3, 12))), "{}", o.note);
 }
 
 #[test]
