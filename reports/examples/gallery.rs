@@ -2,14 +2,53 @@
 //!
 //! `cargo run -p reports --release --example gallery`
 
-use reports::{Axis, AxisName, Cells, Error, Figure, Layer, OutputDir, Palette, Scale, Series};
+use reports::{
+    Axis, AxisName, Block, Cells, Claim, Error, Figure, Finding, Layer, OutputDir, Page, Palette, Scale, Section,
+};
+use reports::{Series, Table, Verdict};
 
 fn main() -> Result<(), Error> {
     let output = OutputDir::create("target/gallery")?;
+    let mut blocks = vec![Block::Text("One of each kind.".to_owned()), table(), Block::Claims(claims())];
     for figure in [convergence(), double_double(), drift(), linear(), stability(), radius(), empty(), many()] {
-        output.write(&format!("{}.svg", figure.id), reports::svg(&figure)?)?;
+        let svg = reports::svg(&figure)?;
+        output.write(&format!("{}.svg", figure.id), &svg)?;
+        blocks.push(Block::Figure { figure, svg });
     }
+    let [id, title, intro] = ["all", "All kinds", "What the drawing can do."].map(str::to_owned);
+    let [head, text] = ["RK4 keeps its order", "Fourth order down to the round-off of f64."].map(str::to_owned);
+    let page = Page {
+        title: "Gallery".to_owned(),
+        lead: "Every kind of figure, table and claim, with made-up data.".to_owned(),
+        findings: vec![Finding { title: head, text, figure: Some("convergence".to_owned()) }; 3],
+        sections: vec![Section { id, title, intro, blocks }],
+        footer: vec![("command".to_owned(), "cargo run -p reports --release --example gallery".to_owned())],
+    };
+    output.write("index.html", page.html()?)?;
     Ok(())
+}
+
+fn table() -> Block {
+    let mut table = Table::new(&["method", "order", "error (m)", "outcome"], &["order", "error (m)"]);
+    for (i, (name, order, _)) in METHODS.into_iter().enumerate() {
+        let error = if i == 2 { String::new() } else { format!("{:.2e}", 0.3_f64.powi(7 * (i as i32 % 4))) };
+        table.push([name.to_owned(), order.to_string(), error, "finished".to_owned()]);
+    }
+    Block::Table { caption: "Methods".to_owned(), table, csv: Some("methods.csv".to_owned()) }
+}
+
+fn claims() -> Vec<Claim> {
+    let verdicts = [Verdict::Holds, Verdict::Broken, Verdict::NotTested];
+    let claim = |(i, verdict): (usize, Verdict)| Claim {
+        id: format!("gallery.{i}"),
+        study: "gallery".to_owned(),
+        statement: format!("{} has order {} on the harmonic oscillator", METHODS[i].0, METHODS[i].1),
+        theory: METHODS[i].1.to_string(),
+        measured: "0.998 ± 0.003".to_owned(),
+        bound: "0.95 to 1.05".to_owned(),
+        verdict,
+    };
+    verdicts.into_iter().enumerate().map(claim).collect()
 }
 
 fn figure(id: &str, title: &str, x: Axis, y: Axis, layers: Vec<Layer>) -> Figure {
