@@ -14,14 +14,17 @@ mod layers;
 mod markers;
 mod place;
 mod ticks;
+mod triangle;
 
-use crate::{Axis, Error, Figure, Layer};
+use crate::{Axis, AxisName, Error, Figure, Layer, Scale};
 use axis::AxisMap;
 use canvas::{CENTER, Canvas, Frame, GREY, INK, LEFT, Rect, UNITS, font, stroke, text_width, units, wrap};
 use plotters::prelude::*;
 
 /// What the drawing library says when it refuses.
 type Refused = DrawingAreaErrorKind<std::io::Error>;
+/// What the library draws on.
+type Sheet<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 const TITLE: f64 = 17.0;
 const LABEL: f64 = 14.0;
@@ -53,7 +56,7 @@ pub fn svg(figure: &Figure) -> Result<String, Error> {
     canvas::prepare_font().map_err(failed)?;
     let mut drawing = String::new();
     let size = (figure.width * UNITS as u32, figure.height * UNITS as u32);
-    draw(figure, SVGBackend::with_string(&mut drawing, size), x, y, any_x && any_y)
+    draw(figure, SVGBackend::with_string(&mut drawing, size), [&x, &y], any_x && any_y)
         .map_err(|e| failed(e.to_string()))?;
     Ok(finish(figure, &drawing))
 }
@@ -90,10 +93,12 @@ fn extent(figure: &Figure) -> Extent {
             // Theory may run off the chart; what was measured decides how much is shown.
             Layer::Curve { points, .. } if !measured => add_points(&mut all, figure, points),
             Layer::Floor { y, .. } => {
-                all.y.extend([*y, if figure.y.scale == crate::Scale::Log { y / 10.0 } else { *y }])
+                // Some of the band has to be seen.
+                let below = if figure.y.scale == Scale::Log { y / 10.0 } else { *y };
+                all.y.extend([*y, below]);
             }
-            Layer::Guide { axis: crate::AxisName::X, at, .. } => all.x.push(*at),
-            Layer::Guide { axis: crate::AxisName::Y, at, .. } => all.y.push(*at),
+            Layer::Guide { axis: AxisName::X, at, .. } => all.x.push(*at),
+            Layer::Guide { axis: AxisName::Y, at, .. } => all.y.push(*at),
             Layer::Cells(cells) => {
                 all.x_edges.extend([cells.x0, cells.x1]);
                 all.y_edges.extend([cells.y0, cells.y1]);
@@ -106,32 +111,38 @@ fn extent(figure: &Figure) -> Extent {
 
 /// A point counts only if both its coordinates can be shown.
 fn add_points(all: &mut Extent, figure: &Figure, points: &[[f64; 2]]) {
-    let shown = |axis: &Axis, v: f64| v.is_finite() && (axis.scale == crate::Scale::Linear || v > 0.0);
+    let shown = |axis: &Axis, v: f64| v.is_finite() && (axis.scale == Scale::Linear || v > 0.0);
     for [x, y] in points.iter().filter(|[x, y]| shown(&figure.x, *x) && shown(&figure.y, *y)) {
         all.x.push(*x);
         all.y.push(*y);
     }
 }
 
-fn draw(figure: &Figure, backend: SVGBackend<'_>, x: AxisMap, y: AxisMap, any: bool) -> Result<(), Refused> {
+fn draw(figure: &Figure, backend: SVGBackend<'_>, [x, y]: [&AxisMap; 2], any: bool) -> Result<(), Refused> {
     let root = backend.into_drawing_area();
     root.fill(&WHITE)?;
-    let width = f64::from(figure.width);
-    let title = wrap(&figure.title, TITLE, width - 32.0);
-    let top = 24.0 + LINE_HEIGHT * title.len() as f64;
+    let title = wrap(&figure.title, TITLE, f64::from(figure.width) - 32.0);
+    for (i, line) in title.iter().enumerate() {
+        let at = (units(16.0), units(24.0 + LINE_HEIGHT * i as f64));
+        root.draw(&Text::new(line.clone(), at, font(TITLE).color(&INK).pos(LEFT)))?;
+    }
+    let frame = axes(figure, &root, [x, y], 24.0 + LINE_HEIGHT * title.len() as f64)?;
+    let canvas = Canvas { root, frame };
+    fill_frame(&canvas, figure, any)?;
+    canvas.root.present()
+}
+
+/// Draws grid, axes and their labels below `top` (CSS pixels), and says where the frame then lies.
+fn axes(figure: &Figure, root: &Sheet<'_>, [x, y]: [&AxisMap; 2], top: f64) -> Result<Frame, Refused> {
     let height = f64::from(figure.height) - top - 58.0;
-    let y = y.with_ticks((height / if figure.y.scale == crate::Scale::Log { 30.0 } else { 44.0 }) as usize);
+    let tick_height = if y.scale == Scale::Log { 30.0 } else { 44.0 };
+    let y = y.clone().with_ticks((height / tick_height) as usize);
     let tick_width = y.major.iter().map(|tick| text_width(&tick.label, TICK)).fold(0.0, f64::max);
     let (left, right) = (44.0 + tick_width, labels::margin(figure));
-    let x = fitting(x, width - left - right);
-    for (i, line) in title.iter().enumerate() {
-        root.draw(&Text::new(
-            line.clone(),
-            (units(16.0), units(24.0 + LINE_HEIGHT * i as f64)),
-            font(TITLE).color(&INK).pos(LEFT),
-        ))?;
-    }
-    let mut chart = ChartBuilder::on(&root)
+    let width = f64::from(figure.width) - left - right;
+    let x = fitting(x, width);
+    let label_size = fitted(&figure.x.label, &figure.y.label, width, height);
+    let mut chart = ChartBuilder::on(root)
         .margin_top(units(top))
         .margin_right(units(right))
         .margin_bottom(units(10.0))
@@ -143,19 +154,15 @@ fn draw(figure: &Figure, backend: SVGBackend<'_>, x: AxisMap, y: AxisMap, any: b
         .configure_mesh()
         .x_desc(&figure.x.label)
         .y_desc(&figure.y.label)
-        .axis_desc_style(font(fitted(&figure.x.label, &figure.y.label, width - left - right, height)).color(&INK))
+        .axis_desc_style(font(label_size).color(&INK))
         .label_style(font(TICK).color(&INK))
         .bold_line_style(stroke(BLACK.mix(0.15), 0.5))
         .light_line_style(stroke(BLACK.mix(0.06), 0.5))
         .axis_style(stroke(INK, 1.0))
         .set_all_tick_mark_size(units(4.5))
         .draw()?;
-    let (bottom_left, top_right) = (chart.backend_coord(&(x.low, y.low)), chart.backend_coord(&(x.high, y.high)));
-    drop(chart);
-    let area = Rect { left: bottom_left.0, bottom: bottom_left.1, right: top_right.0, top: top_right.1 };
-    let canvas = Canvas { root, frame: Frame { area, x, y } };
-    fill_frame(&canvas, figure, any)?;
-    canvas.root.present()
+    let (low, high) = (chart.backend_coord(&(x.low, y.low)), chart.backend_coord(&(x.high, y.high)));
+    Ok(Frame { area: Rect { left: low.0, bottom: low.1, right: high.0, top: high.1 }, x, y })
 }
 
 fn fill_frame(canvas: &Canvas<'_>, figure: &Figure, any: bool) -> Result<(), Refused> {
@@ -175,7 +182,7 @@ fn fill_frame(canvas: &Canvas<'_>, figure: &Figure, any: bool) -> Result<(), Ref
 }
 
 /// As many ticks as leave a gap between their labels, and no end label that would be cut.
-fn fitting(axis: AxisMap, width: f64) -> AxisMap {
+fn fitting(axis: &AxisMap, width: f64) -> AxisMap {
     let mut most = 12;
     loop {
         let ticked = axis.clone().with_ticks(most);
