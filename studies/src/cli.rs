@@ -6,12 +6,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use integrator::methods::MethodId;
-use reports::{Claim, OutputDir, Table, exit_code};
+use reports::{Claim, exit_code};
 
 use crate::error::Error;
 use crate::run::{Precision, method_from_id};
 use crate::scenes;
-use crate::study::{Selection, Study};
+use crate::study::Selection;
 use crate::sweep::Progress;
 
 /// What to run, and where to write it.
@@ -59,7 +59,7 @@ impl Common {
     ///
     /// # Errors
     /// An unknown name, a parameter outside its range, or a number of steps or threads that is zero.
-    pub fn selection(&self, label: &str) -> Result<Selection, Error> {
+    pub fn selection(&self) -> Result<Selection, Error> {
         if self.steps.contains(&0) {
             return Err(plan("--steps", "a run has at least 1 step; give numbers such as 64,128,256"));
         }
@@ -76,7 +76,7 @@ impl Common {
             self.scene.iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
         };
         self.apply_settings(&mut chosen)?;
-        let label = (!self.quiet && std::io::stderr().is_terminal()).then(|| label.to_owned());
+        let label = (!self.quiet && std::io::stderr().is_terminal()).then(String::new);
         Ok(Selection {
             scenes: chosen,
             methods: named(&self.method, method_from_id, MethodId::ALL)?,
@@ -127,46 +127,18 @@ fn named<V: Copy + PartialEq>(
     Ok(crate::study::distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
 }
 
-/// Runs one study: rows to CSV, figures to SVG, claims to a table on stdout.
-///
-/// # Errors
-/// Bad input, or an output that cannot be written.
-pub fn run_study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
-    let selection = common.selection(S::ID)?;
-    let out = OutputDir::create(&common.out)?;
-    let rows = S::measure(&selection);
-    out.write(&format!("{}.csv", S::ID), reports::write_csv(&rows)?)?;
-    for figure in S::figures(&rows) {
-        out.write(&format!("{}.svg", figure.id), reports::svg(&figure)?)?;
-    }
-    let claims = S::claims(&rows);
-    out.write(&format!("{}-claims.csv", S::ID), reports::write_csv(&claims)?)?;
-    Ok(claims)
-}
-
-/// The claims as a table on a terminal.
-pub fn claims_table(claims: &[Claim]) -> Table {
-    Table {
-        headers: ["claim", "theory", "measured", "verdict"].map(str::to_owned).to_vec(),
-        align: Vec::new(),
-        rows: claims
-            .iter()
-            .map(|c| {
-                vec![c.id.clone(), c.theory.clone(), c.measured.clone(), format!("{} {}", c.verdict.sign(), c.verdict)]
-            })
-            .collect(),
-    }
-}
-
 /// Prints to stdout; a reader that has gone away is no error.
-pub fn print(text: &str) {
+fn print(text: &str) {
     let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }
 
-/// Ends a program: 0 if all claims hold, 1 if one is broken, 2 if the input or the output was wrong.
-pub fn finish(result: Result<Vec<Claim>, Error>) -> ExitCode {
+/// Prints the claims and ends a program: 0 if all claims hold, 1 if one is broken, 2 if the input or the output was wrong.
+pub fn finish(result: Result<Vec<Claim>, Error>, show: impl Fn(&[Claim]) -> String) -> ExitCode {
     match result {
-        Ok(claims) => ExitCode::from(exit_code(&claims)),
+        Ok(claims) => {
+            print(&show(&claims));
+            ExitCode::from(exit_code(&claims))
+        }
         Err(error) => {
             let _ = writeln!(std::io::stderr(), "error: {error}");
             ExitCode::from(2)

@@ -16,6 +16,8 @@ pub mod fit;
 pub mod growth;
 pub mod observation;
 pub mod order;
+pub mod produce;
+mod provenance;
 pub mod scene;
 pub mod scenes;
 pub mod special;

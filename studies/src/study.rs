@@ -1,9 +1,10 @@
 //! What every study has: a plan, rows, figures and claims.
 
-use reports::{Claim, Figure};
+use reports::{Claim, Figure, Table};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::error::Error;
 use crate::run::Precision;
 use crate::scene::AnyScene;
 use crate::sweep::Progress;
@@ -32,15 +33,52 @@ pub trait Study {
 
     /// The name: of the binary, and of the CSV.
     const ID: &'static str;
+    /// The question it answers.
+    const TITLE: &'static str;
+    /// How it answers it, for a reader of the report.
+    const INTRO: &'static str;
 
     /// Runs what it needs.
     fn measure(selection: &Selection) -> Vec<Self::Row>;
+
+    /// What follows from the rows, as tables.
+    ///
+    /// # Errors
+    /// A table that has no form as CSV.
+    fn tables(rows: &[Self::Row]) -> Result<Vec<Derived>, Error>;
 
     /// Charts of the rows.
     fn figures(rows: &[Self::Row]) -> Vec<Figure>;
 
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
+}
+
+/// A table that follows from the rows of a study.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    /// Name of its CSV, without the ending.
+    pub name: &'static str,
+    /// What it shows.
+    pub caption: &'static str,
+    /// All of it, as CSV.
+    pub csv: String,
+    /// What a reader is shown of it.
+    pub table: Table,
+}
+
+/// A number for a reader: four digits, and a power of ten where it needs one.
+pub fn short(x: Option<f64>) -> String {
+    match x {
+        None => "–".to_owned(),
+        Some(0.0) => "0".to_owned(),
+        Some(x) if !x.is_finite() => x.to_string(),
+        Some(x) if (1e-3..1e5).contains(&x.abs()) => {
+            let digits = (3 - x.abs().log10().floor() as i32).max(0) as usize;
+            format!("{x:.digits$}")
+        }
+        Some(x) => format!("{x:.3e}"),
+    }
 }
 
 /// The palette index of a method: the same in every chart.

@@ -3,14 +3,18 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use studies::cli::{Common, finish, print, run_study};
+use studies::cli::{Common, finish};
 use studies::convergence::Convergence;
+use studies::produce::{study, verdicts};
 
 /// Sweeps the step on scenes with exact solutions and measures the order of convergence.
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Examples:\n  convergence --scene oscillator --method rk4\n  convergence --scene torque-free-spin --precision f64 --out /tmp/spin"
+    after_help = "Examples:
+  convergence --scene oscillator --method rk4
+  convergence --scene torque-free-spin --precision f64 --out /tmp/spin
+  convergence --scene oscillator --set stiffness=24 --steps 64,128,256,512"
 )]
 struct Cli {
     #[command(flatten)]
@@ -18,12 +22,5 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let claims = run_study::<Convergence>(&cli.common);
-    if let Ok(claims) = &claims {
-        for c in claims {
-            print(&format!("{} {} | {} | {}\n", c.verdict, c.id, c.theory, c.measured));
-        }
-    }
-    finish(claims)
+    finish(study::<Convergence>(&Cli::parse().common), verdicts)
 }

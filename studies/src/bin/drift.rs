@@ -3,14 +3,18 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use studies::cli::{Common, finish, print, run_study};
+use studies::cli::{Common, finish};
 use studies::drift::DriftStudy;
+use studies::produce::{study, verdicts};
 
 /// Follows energy, momenta and the quaternion norm over a long run and names the law of their growth.
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Examples:\n  drift --scene oscillator --method rk4\n  drift --scene torque-free-spin --precision f64 --out /tmp/spin"
+    after_help = "Examples:
+  drift --scene oscillator --method rk4
+  drift --scene torque-free-spin --precision f64 --out /tmp/spin
+  drift --scene oscillator --set stiffness=24"
 )]
 struct Cli {
     #[command(flatten)]
@@ -18,12 +22,5 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let claims = run_study::<DriftStudy>(&cli.common);
-    if let Ok(claims) = &claims {
-        for c in claims {
-            print(&format!("{} {} | {} | {}\n", c.verdict, c.id, c.theory, c.measured));
-        }
-    }
-    finish(claims)
+    finish(study::<DriftStudy>(&Cli::parse().common), verdicts)
 }

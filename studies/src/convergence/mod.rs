@@ -14,10 +14,11 @@ use integrator::methods::MethodId;
 use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
+use crate::error::Error;
 use crate::observation::{Observation, Quantity};
 use crate::run::{Outcome, Precision, Run, Trajectory};
 use crate::scene::{AnyScene, ExpectedOrder};
-use crate::study::{Selection, Study};
+use crate::study::{Derived, Selection, Study};
 use crate::sweep::in_parallel;
 
 /// Halvings of the step from the coarsest to the finest run.
@@ -72,9 +73,16 @@ pub struct Convergence;
 impl Study for Convergence {
     type Row = Row;
     const ID: &'static str = "convergence";
+    const TITLE: &'static str = "How wrong is it? Convergence";
+    const INTRO: &'static str = "Each method runs each scene with a step that is halved again and again, in three precisions, \
+        and is compared with the exact motion. The slope of error against step is the observed order; where the slope ends \
+        in f32 and f64, rounding has taken over.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
         measure(selection)
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        Ok(vec![orders::table(rows)?])
     }
     fn figures(rows: &[Row]) -> Vec<Figure> {
         figures::figures(rows)

@@ -1,12 +1,14 @@
 //! From rows to observed orders, and to claims about them.
 
-use reports::{Claim, Verdict as Truth};
+use reports::{Claim, Table, Verdict as Truth};
 use serde::{Deserialize, Serialize};
 
 use super::{HALVINGS, Row};
+use crate::error::Error;
 use crate::observation::Quantity;
 use crate::order::{self, Expected, Limits, Sample, Verdict};
 use crate::run::Precision;
+use crate::study::{Derived, short};
 
 /// Where in a run an error is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -156,6 +158,36 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         tolerance,
         note: seen.note,
     }
+}
+
+/// Every order as CSV; for a reader those in double-double, which no rounding disturbs.
+pub(super) fn table(rows: &[Row]) -> Result<Derived, Error> {
+    let orders = orders(rows);
+    let headers = ["scene", "method", "quantity", "taken", "theory", "order", "interval", "window h (s)", "verdict"];
+    let mut table = Table::new(&headers, &["theory", "order"]);
+    for o in orders.iter().filter(|o| o.precision == Precision::DoubleDouble) {
+        let pair = |a: Option<f64>, b: Option<f64>, show: fn(Option<f64>) -> String| match (a, b) {
+            (None, None) => "–".to_owned(),
+            _ => format!("{} … {}", show(a), show(b)),
+        };
+        table.push([
+            o.scene.clone(),
+            o.method.clone(),
+            o.quantity.id().to_owned(),
+            o.measure.id().to_owned(),
+            o.theory_order.map_or_else(|| "exact".to_owned(), |p| p.to_string()),
+            o.order.map_or_else(|| "–".to_owned(), |p| format!("{p:.3}")),
+            pair(o.order_low, o.order_high, |x| x.map_or_else(String::new, |x| format!("{x:.3}"))),
+            pair(o.window_from_h_s, o.window_to_h_s, short),
+            o.verdict.to_string(),
+        ]);
+    }
+    Ok(Derived {
+        name: "orders",
+        caption: "Observed orders in double-double; the CSV has all precisions, constants and floors",
+        csv: reports::write_csv(&orders)?,
+        table,
+    })
 }
 
 /// One claim a scene and method: the order in double-double is theory's, in every quantity, at the end and at most; and the

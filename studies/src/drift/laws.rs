@@ -1,11 +1,13 @@
 //! From the stretches of a run to the law of growth, and to claims about it.
 
-use reports::{Claim, Verdict as Truth};
+use reports::{Claim, Table, Verdict as Truth};
 use serde::{Deserialize, Serialize};
 
 use super::{Drift, Row};
+use crate::error::Error;
 use crate::growth::{self, Law};
 use crate::run::Precision;
+use crate::study::{Derived, short};
 
 /// The law of growth of one balance in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,6 +94,33 @@ fn law_of(run: &[Row]) -> LawRow {
         failed_at_s: first.failed_at_s,
         evidence: seen.evidence,
     }
+}
+
+/// Every law as CSV; for a reader those in f64.
+pub(super) fn table(rows: &[Row]) -> Result<Derived, Error> {
+    let laws = laws(rows);
+    let headers =
+        ["scene", "method", "error of", "largest", "unit", "relative", "law", "theory", "error(T)/error(T/10)"];
+    let mut table = Table::new(&headers, &["largest", "relative", "error(T)/error(T/10)"]);
+    for law in laws.iter().filter(|law| law.precision == Precision::F64) {
+        table.push([
+            law.scene.clone(),
+            law.method.clone(),
+            law.drift.id().to_owned(),
+            short(law.largest_error),
+            law.unit.clone(),
+            short(law.relative_error),
+            law.failed_at_s.map_or_else(|| law.law.to_string(), |t| format!("diverged at {} s", short(Some(t)))),
+            law.theory_law.map_or_else(|| "–".to_owned(), |law| law.to_string()),
+            short(law.decade_ratio),
+        ]);
+    }
+    Ok(Derived {
+        name: "growth-laws",
+        caption: "Growth laws in f64; the CSV has all precisions, rates, bands and the evidence",
+        csv: reports::write_csv(&laws)?,
+        table,
+    })
 }
 
 /// One claim for each run and balance of which theory says something, in f64.

@@ -1,0 +1,133 @@
+//! From a plan to files: rows, tables, figures, claims, one page. Nothing is written before everything is known.
+
+use reports::{Block, Claim, OutputDir, Page, Section, Table};
+
+use crate::cli::Common;
+use crate::convergence::Convergence;
+use crate::drift::DriftStudy;
+use crate::error::Error;
+use crate::provenance;
+use crate::study::{Derived, Selection, Study};
+
+/// What a study has made: files to be written, and its part of the page.
+pub struct Product {
+    /// Name and content of each file.
+    pub files: Vec<(String, String)>,
+    /// Its part of the page.
+    pub section: Section,
+    /// Its verdicts.
+    pub claims: Vec<Claim>,
+}
+
+/// Every study of the report, in its order.
+pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
+    Ok(vec![of::<Convergence>(selection)?, of::<DriftStudy>(selection)?])
+}
+
+/// Runs one study and makes all that follows from its rows.
+///
+/// # Errors
+/// Rows or figures that have no form as text.
+pub fn of<S: Study>(selection: &mut Selection) -> Result<Product, Error> {
+    if let Some(label) = &mut selection.progress.label {
+        S::ID.clone_into(label);
+    }
+    from_rows::<S>(&S::measure(selection))
+}
+
+/// All that follows from the rows of a study, without running anything.
+///
+/// # Errors
+/// Rows or figures that have no form as text.
+pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
+    let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?)];
+    let claims = S::claims(rows);
+    let claims_csv = format!("{}-claims.csv", S::ID);
+    files.push((claims_csv, reports::write_csv(&claims)?));
+    let mut blocks = vec![Block::Claims(claims.clone())];
+    for Derived { name, caption, csv, table } in S::tables(rows)? {
+        files.push((format!("{name}.csv"), csv));
+        blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
+    }
+    for figure in S::figures(rows) {
+        let svg = reports::svg(&figure)?;
+        files.push((format!("{}.svg", figure.id), svg.clone()));
+        blocks.push(Block::Figure { figure, svg });
+    }
+    let section = Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks };
+    Ok(Product { files, section, claims })
+}
+
+/// Runs one study and writes its files.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
+    let mut selection = common.selection()?;
+    let out = OutputDir::create(&common.out)?;
+    let product = of::<S>(&mut selection)?;
+    write(&out, &product.files)?;
+    Ok(product.claims)
+}
+
+/// Runs every study and writes the report.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
+    let mut selection = common.selection()?;
+    let out = OutputDir::create(&common.out)?;
+    let products = all(&mut selection)?;
+    let (mut files, mut sections, mut claims) = (Vec::new(), Vec::new(), Vec::new());
+    for product in products {
+        files.extend(product.files);
+        sections.push(product.section);
+        claims.extend(product.claims);
+    }
+    let page = Page {
+        title: "How accurate is a fixed step?".to_owned(),
+        lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
+            .to_owned(),
+        findings: Vec::new(),
+        sections,
+        footer: provenance::lines(common),
+    };
+    files.push(("manifest.json".to_owned(), provenance::manifest(common)));
+    files.push(("index.html".to_owned(), page.html()?));
+    write(&out, &files)?;
+    Ok(claims)
+}
+
+fn write(out: &OutputDir, files: &[(String, String)]) -> Result<(), Error> {
+    files.iter().try_for_each(|(name, text)| out.write(name, text).map(|_| ()).map_err(Error::from))
+}
+
+/// A short table: how many claims of each study hold, and every one that does not.
+pub fn summary(claims: &[Claim]) -> String {
+    let mut table = Table::new(&["study", "holds", "broken", "not tested"], &["holds", "broken", "not tested"]);
+    for study in claims.chunk_by(|a, b| a.study == b.study) {
+        let counts = reports::claim::counts(study);
+        let numbers = [counts.holds, counts.broken, counts.not_tested].map(|n| n.to_string());
+        table.push(std::iter::once(study[0].study.clone()).chain(numbers));
+    }
+    let broken = broken(claims);
+    if broken.rows.is_empty() { table.to_text() } else { format!("{}\n{}", broken.to_text(), table.to_text()) }
+}
+
+fn broken(claims: &[Claim]) -> Table {
+    let mut table = Table::new(&["broken claim", "theory", "measured", "bound"], &[]);
+    for claim in claims.iter().filter(|claim| claim.verdict == reports::Verdict::Broken) {
+        table.push([&claim.id, &claim.theory, &claim.measured, &claim.bound].map(String::clone));
+    }
+    table
+}
+
+/// Every claim with its verdict.
+pub fn verdicts(claims: &[Claim]) -> String {
+    let mut table = Table::new(&["claim", "theory", "measured", "verdict"], &[]);
+    for claim in claims {
+        let verdict = format!("{} {}", claim.verdict.sign(), claim.verdict);
+        table.push([&claim.id, &claim.theory, &claim.measured, &verdict].map(String::clone));
+    }
+    table.to_text()
+}
