@@ -150,11 +150,11 @@ macro_rules! real_for_primitive {
             const EPSILON: f64 = <$t>::EPSILON as f64;
             #[inline(always)]
             fn to_f64(self) -> f64 {
-                self as f64
+                f64::from(self)
             }
             #[inline]
             fn widen(self) -> fx128 {
-                fx128::from(self as f64)
+                fx128::from(f64::from(self))
             }
             #[inline]
             fn narrow(x: fx128) -> Self {
@@ -184,7 +184,7 @@ real_for_primitive!(f64, 8, libm::sin, libm::cos, libm::exp, libm::log, libm::at
 real_for_primitive!(f32, 6, libm::sinf, libm::cosf, libm::expf, libm::logf, libm::atan2f);
 
 /// pi / 2 in three parts, for the reduction of an argument.
-const HALF_PI: [f64; 3] = [1.570_796_326_794_896_6, 6.123_233_995_736_766e-17, -1.497_384_904_859_183_4e-33];
+const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_183_4e-33];
 
 /// 1 / n! in double-double.
 const INVERSE_FACTORIAL: [fx128; 26] = {

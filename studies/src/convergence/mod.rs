@@ -143,7 +143,7 @@ impl Job<'_> {
 
     /// The exact motion at a step. Where the number of steps is a power of two the step is a checkpoint.
     fn exact_at(&self, step: u64) -> Cow<'_, Observation> {
-        if (step * CHECKPOINTS) % self.steps == 0 {
+        if (step * CHECKPOINTS).is_multiple_of(self.steps) {
             Cow::Borrowed(&self.exact[(step * CHECKPOINTS / self.steps) as usize])
         } else {
             let end = fx128::lit(self.scene.scene().info().horizon_s);
