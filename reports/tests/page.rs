@@ -77,7 +77,7 @@ fn every_region_that_scrolls_has_a_name_and_can_be_reached_by_key() {
     let regions: Vec<&str> = html.split("<div class=\"scroll\"").skip(1).filter_map(|r| r.split('>').next()).collect();
     assert_eq!(regions.len(), 3);
     let named = |r: &&str| r.contains("tabindex=\"0\"") && r.contains("role=\"region\"") && !r.contains("label=\"\"");
-    assert!(regions.iter().all(|region| named(region)), "{regions:?}");
+    assert!(regions.iter().all(named), "{regions:?}");
     assert!(html.contains("lang=\"en\"") && html.contains("width=device-width") && html.contains("<main id=\"main\">"));
 }
 
