@@ -46,11 +46,9 @@ fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
         .unwrap_or(Precision::F64);
     let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.precision == precision).collect();
     let mut layers = Vec::new();
-    // The median: the rounding of one long run does not stand for all.
-    let mut rounding: Vec<f64> = rows.iter().filter_map(|row| row.rounding_end.filter(|&e| e > 0.0)).collect();
-    rounding.sort_by(f64::total_cmp);
-    if let Some(&y) = rounding.get(rounding.len() / 2) {
-        layers.push(Layer::Floor { y, label: format!("rounding floor ({})", precision.id()) });
+    let rounding = rows.iter().filter_map(|row| row.rounding_end).fold(0.0, f64::max);
+    if rounding > 0.0 {
+        layers.push(Layer::Floor { y: rounding, label: format!("largest rounding error ({})", precision.id()) });
     }
     for method in MethodId::ALL {
         let of_method: Vec<&Row> = rows.iter().copied().filter(|row| row.method == method.id()).collect();
