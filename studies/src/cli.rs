@@ -127,18 +127,21 @@ fn named<V: Copy + PartialEq>(
     Ok(crate::study::distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
 }
 
-/// Prints to stdout; a reader that has gone away is no error.
-fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+/// Prints to stdout. A reader that has gone away (`| head`) is no error; a disk that is full is one.
+fn print(text: &str) -> Result<(), Error> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(plan("standard output", &format!("cannot be written: {error}; the files were written all the same")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Prints the claims and ends a program: 0 if all claims hold, 1 if one is broken, 2 if the input or the output was wrong.
 pub fn finish(result: Result<Vec<Claim>, Error>, show: impl Fn(&[Claim]) -> String) -> ExitCode {
-    match result {
-        Ok(claims) => {
-            print(&show(&claims));
-            ExitCode::from(exit_code(&claims))
-        }
+    match result.and_then(|claims| print(&show(&claims)).map(|()| claims)) {
+        Ok(claims) => ExitCode::from(exit_code(&claims)),
         Err(error) => {
             let _ = writeln!(std::io::stderr(), "error: {error}");
             ExitCode::from(2)

@@ -44,15 +44,16 @@ pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
     let claims = S::claims(rows);
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?));
-    let mut blocks = vec![Block::Claims(claims.clone())];
-    for Derived { name, caption, csv, table } in S::tables(rows)? {
-        files.push((format!("{name}.csv"), csv));
-        blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
-    }
+    let mut blocks = Vec::new();
     for figure in S::figures(rows) {
         let svg = reports::svg(&figure)?;
         files.push((format!("{}.svg", figure.id), svg.clone()));
         blocks.push(Block::Figure { figure, svg });
+    }
+    blocks.push(Block::Claims(claims.clone()));
+    for Derived { name, caption, csv, table } in S::tables(rows)? {
+        files.push((format!("{name}.csv"), csv));
+        blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
     let section = Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks };
     Ok(Product { files, section, claims })

@@ -1,0 +1,142 @@
+//! The binaries as a user meets them: exit codes, messages, files. Numbers are other tests' business.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// The binary of that name, built for the same profile as this test.
+fn program(name: &str) -> Command {
+    let test = std::env::current_exe().expect("a test knows its own path");
+    let directory = test.parent().and_then(Path::parent).expect("target/<profile>/deps/<test>");
+    let mut command = Command::new(directory.join(name));
+    command.env("NO_COLOR", "1").stdin(Stdio::null());
+    command
+}
+
+fn run(name: &str, arguments: &[&str], out: &Path) -> Output {
+    program(name).args(arguments).arg("--out").arg(out).output().expect("the binary was built with the workspace")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn files(directory: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files: Vec<_> = fs::read_dir(directory)
+        .expect("the output directory exists")
+        .map(|entry| entry.expect("readable").path())
+        .map(|path| (path.clone(), fs::read(path).expect("readable")))
+        .collect();
+    files.sort();
+    files
+}
+
+const SMALL: [&str; 3] = ["--quick", "--scene", "oscillator"];
+
+// Fails if: a study is left out of `produce::report`, or a file is not written.
+#[test]
+fn report_writes_tables_charts_and_one_page() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let output = run("report", &SMALL, out.path());
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+    assert!(text(&output.stdout).contains("convergence"), "{}", text(&output.stdout));
+    for name in ["index.html", "manifest.json", "convergence.csv", "orders.csv", "drift.csv", "growth-laws.csv"] {
+        assert!(out.path().join(name).is_file(), "{name} is missing");
+    }
+    assert!(files(out.path()).iter().any(|(path, _)| path.extension().is_some_and(|e| e == "svg")));
+}
+
+// Fails if: rows are written in the order in which threads finish.
+#[test]
+fn output_is_the_same_bytes_with_one_thread_and_with_two() {
+    let (one, two) = (tempfile::tempdir().expect("temporary"), tempfile::tempdir().expect("temporary"));
+    run("report", &[&SMALL[..], &["--threads", "1"]].concat(), one.path());
+    run("report", &[&SMALL[..], &["--threads", "2"]].concat(), two.path());
+    let (one, two) = (files(one.path()), files(two.path()));
+    assert!(one.len() > 5);
+    assert_eq!(one.len(), two.len());
+    for ((a, one), (b, two)) in one.iter().zip(&two) {
+        assert_eq!(a.file_name(), b.file_name());
+        assert!(one == two, "{} differs", a.display());
+    }
+}
+
+// Fails if: an error is reported with another exit code, or without the word that helps.
+#[test]
+fn wrong_input_is_named_with_its_remedy_and_ends_with_2() {
+    let cases: [(&[&str], &str); 8] = [
+        (&["--scene", "oscilator"], "did you mean 'oscillator'?"),
+        (&["--method", "rk5"], "did you mean 'rk4'?"),
+        (&["--precision", "f16"], "double-double"),
+        (&["--steps", "0"], "at least 1 step"),
+        (&["--threads", "0"], "at least 1"),
+        (&["--scene", "oscillator", "--set", "mass=-1"], "must be finite and > 0"),
+        (&["--scene", "oscillator", "--set", "mass"], "NAME=VALUE"),
+        (&["--scene", "torque-free-spin", "--set", "inertia=1,1,3"], "sum of the other two"),
+    ];
+    for binary in ["report", "convergence", "drift"] {
+        for (arguments, expected) in cases {
+            let out = tempfile::tempdir().expect("a temporary directory");
+            let output = run(binary, arguments, out.path());
+            let message = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{binary} {arguments:?}: {message}");
+            assert!(message.contains(expected), "{binary} {arguments:?}: {message}");
+            assert!(files(out.path()).is_empty(), "{binary} {arguments:?} wrote something");
+        }
+    }
+}
+
+// Fails if: files are written as they are made, or the output directory is not looked at.
+#[test]
+fn an_output_that_cannot_be_written_leaves_earlier_files_alone() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let occupied = directory.path().join("file");
+    fs::write(&occupied, "mine").expect("writable");
+    let output = run("report", &SMALL, &occupied);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("file"), "{}", text(&output.stderr));
+    assert_eq!(fs::read(&occupied).expect("still there"), b"mine");
+}
+
+// Fails if: a write to standard output that fails is ignored (full disk), or shouted about (closed pipe).
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error_and_a_closed_pipe_is_not() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
+    let arguments = ["--quick", "--scene", "constant-force", "--out"];
+    let output =
+        program("convergence").args(arguments).arg(out.path()).stdout(full).output().expect("the binary was built");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("standard output"), "{}", text(&output.stderr));
+
+    let mut child = program("convergence")
+        .args(arguments)
+        .arg(out.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary was built");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stderr), "");
+}
+
+// Fails if: an error is printed on standard output, or progress where nobody watches.
+#[test]
+fn nothing_but_notes_goes_to_stderr_when_piped() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let output = run("drift", &SMALL, out.path());
+    assert_eq!(text(&output.stderr), "");
+    assert!(text(&output.stdout).contains("drift.oscillator.explicit-euler.energy"));
+}
+
+#[test]
+fn help_shows_examples() {
+    for binary in ["report", "convergence", "drift"] {
+        let output = program(binary).arg("--help").output().expect("the binary was built");
+        assert_eq!(output.status.code(), Some(0));
+        assert!(text(&output.stdout).contains("Examples:"), "{binary}");
+    }
+}
