@@ -3,11 +3,29 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
 
-/// The binary of that name, built for the same profile as this test.
+/// The binary of that name, of the same profile as this test. `cargo test` alone does not build the binaries of another
+/// package, so the first call does.
 fn program(name: &str) -> Command {
-    let test = std::env::current_exe().expect("a test knows its own path");
-    let directory = test.parent().and_then(Path::parent).expect("target/<profile>/deps/<test>");
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    let directory = BUILT.get_or_init(|| {
+        let test = std::env::current_exe().expect("a test knows its own path");
+        let directory = test.parent().and_then(Path::parent).expect("target/<profile>/deps/<test>").to_owned();
+        let profile = match directory.file_name().and_then(|name| name.to_str()) {
+            Some("debug") | None => "dev".to_owned(),
+            Some(name) => name.to_owned(),
+        };
+        let target = directory.parent().expect("the profile's directory is inside the target directory");
+        let status = Command::new(env!("CARGO"))
+            .args(["build", "--quiet", "--workspace", "--bins", "--profile", &profile])
+            .arg("--target-dir")
+            .arg(target)
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .status();
+        assert!(status.is_ok_and(|status| status.success()), "the binaries of `studies` do not build");
+        directory
+    });
     let mut command = Command::new(directory.join(name));
     command.env("NO_COLOR", "1").stdin(Stdio::null());
     command
