@@ -1,8 +1,10 @@
 //! Special functions against tables of 36 digits, in f64 and in double-double.
 //!
-//! Errors are counted in eps of the arithmetic. The bounds are rounding-error counts: a result of a chain of n rounded operations
-//! on positive terms is off by about sqrt(n) eps typically and n eps / 2 at most; where the question itself
-//! is ill conditioned, the condition number appears in the bound.
+//! Errors are counted in eps of the arithmetic. The bounds are rounding-error counts: a sum or product of positive terms
+//! is off by half an eps an operation at most, and its last operations weigh most: 2 eps for an elementary function (an
+//! exponential or a series, one division, one product), 4 for a Carlson integral, 5 for a sum of two. The Jacobi
+//! functions in f64 are double-double ones rounded: half an eps. Where the question itself is ill conditioned, the
+//! condition number appears in the error's scale. Kummer's function at |z| = 6 has summed terms of 65 times its size.
 
 use faer::fx128;
 use integrator::real::Single;
@@ -87,32 +89,32 @@ fn elliptic_error<T: Single>(entry: &Entry) -> f64 {
 
 #[test]
 fn elementary_functions_keep_the_full_precision_of_f64() {
-    check("elementary", 4.0, elementary_error::<f64>);
+    check("elementary", 2.0, elementary_error::<f64>);
 }
 
 #[test]
 fn elementary_functions_keep_the_full_precision_of_double_double() {
-    check("elementary", 12.0, elementary_error::<fx128>);
+    check("elementary", 2.0, elementary_error::<fx128>);
 }
 
 #[test]
 fn carlson_integrals_are_good_to_a_few_eps_in_f64() {
-    check("carlson", 8.0, carlson_error::<f64>);
+    check("carlson", 4.0, carlson_error::<f64>);
 }
 
 #[test]
 fn carlson_integrals_are_good_to_a_few_eps_in_double_double() {
-    check("carlson", 16.0, carlson_error::<fx128>);
+    check("carlson", 4.0, carlson_error::<fx128>);
 }
 
 #[test]
 fn legendre_integrals_are_good_to_a_few_eps_in_f64() {
-    check("elliptic", 8.0, elliptic_error::<f64>);
+    check("elliptic", 5.0, elliptic_error::<f64>);
 }
 
 #[test]
 fn legendre_integrals_are_good_to_a_few_eps_in_double_double() {
-    check("elliptic", 16.0, elliptic_error::<fx128>);
+    check("elliptic", 5.0, elliptic_error::<fx128>);
 }
 
 /// Relative errors of sn, cn, dn and am, each divided by 1 + |u|'s condition number (the phase has an error of eps |u|
@@ -139,13 +141,13 @@ fn worst_of(errors: [f64; 4]) -> f64 {
 #[test]
 fn jacobi_functions_are_relatively_accurate_in_f64() {
     for i in 0..4 {
-        check("jacobi", 1.9, |entry| jacobi_error::<f64>(entry)[i]);
+        check("jacobi", 0.75, |entry| jacobi_error::<f64>(entry)[i]);
     }
 }
 
 #[test]
 fn jacobi_functions_are_relatively_accurate_in_double_double() {
-    check("jacobi", 16.0, |entry| worst_of(jacobi_error::<fx128>(entry)));
+    check("jacobi", 4.0, |entry| worst_of(jacobi_error::<fx128>(entry)));
 }
 
 /// dE/dM = 1 / (1 - e cos E). M is exact and reduced in double-double: errors of eps of the reduced M in the arithmetic, and
@@ -161,8 +163,8 @@ fn kepler_error<T: Single>(entry: &Entry) -> f64 {
 
 #[test]
 fn keplers_equation_is_solved_to_its_conditioning() {
-    check("kepler", 2.0, kepler_error::<f64>);
-    check("kepler", 8.0, kepler_error::<fx128>);
+    check("kepler", 1.0, kepler_error::<f64>);
+    check("kepler", 1.0, kepler_error::<fx128>);
 }
 
 #[test]

@@ -89,11 +89,11 @@ impl Axes {
         Self { index, sign: [a, parity * a * c, c] }
     }
 
-    fn from_body<T: Real>(&self, v: Vector3<T>) -> Vector3<T> {
+    fn canonical<T: Real>(self, v: Vector3<T>) -> Vector3<T> {
         Vector3::from_fn(|i, _| v[self.index[i]] * T::lit(self.sign[i]))
     }
 
-    fn to_body<T: Real>(&self, v: Vector3<T>) -> Vector3<T> {
+    fn body<T: Real>(self, v: Vector3<T>) -> Vector3<T> {
         let mut body = v;
         for i in 0..3 {
             body[self.index[i]] = v[i] * T::lit(self.sign[i]);
@@ -148,7 +148,7 @@ impl Precession {
         let (index, sense, distance) = regime(inertia, omega);
         let axes = Axes::new(index, omega);
         let inertia = Vector3::from_fn(|i, _| inertia[index[i]]);
-        let omega = axes.from_body(Vector3::from(omega).map(fx128::from_f64));
+        let omega = axes.canonical(Vector3::from(omega).map(fx128::from_f64));
         let spread = Spread::new(inertia);
         let l = inertia.map(fx128::from_f64).component_mul(&omega);
         let square = l.component_mul(&l);
@@ -217,7 +217,7 @@ impl Precession {
         let about_l = Rotation { w: T::narrow(cosine), v: Vector3::new(T::lit(0.0), T::lit(0.0), T::narrow(sine)) };
         let turn = narrow::<T>(self.start) * about_l * to_third_axis(l, T::narrow(self.momentum));
         let omega = l.component_div(&self.inertia.map(T::lit));
-        (Rotation { w: turn.w, v: self.axes.to_body(turn.v) }, self.axes.to_body(omega))
+        (Rotation { w: turn.w, v: self.axes.body(turn.v) }, self.axes.body(omega))
     }
 
     /// kappa Pi - alpha at |u| <= K. Both swing fast near the separatrix; only their difference, from one set of

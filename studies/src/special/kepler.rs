@@ -35,7 +35,7 @@ pub fn eccentric_anomaly<T: Single>(mean_anomaly: fx128, eccentricity: T) -> Ecc
     for _ in 0..MOST_STEPS {
         let next = angle - excess(angle, e, mean) / slope(angle, e);
         // The first steps fall strictly; once a step does not fall, only rounding is left.
-        if !(next < angle) {
+        if next >= angle {
             break;
         }
         angle = next;
