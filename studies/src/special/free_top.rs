@@ -61,7 +61,11 @@ impl FreeTop {
 
     /// The time in which omega_body comes back (s): infinite on the separatrix, zero for a steady rotation.
     pub fn body_period(&self) -> fx128 {
-        self.precession.as_ref().map_or(fx128::ZERO, |p| fx128::from_f64(4.0) * p.modulus.quarter_period() / p.lambda)
+        match &self.precession {
+            None => fx128::ZERO,
+            Some(p) if p.modulus.mc.0 == 0.0 => fx128::INFINITY,
+            Some(p) => fx128::from_f64(4.0) * p.modulus.quarter_period() / p.lambda,
+        }
     }
 
     /// The complementary parameter mc = 1 - m of the motion in [0, 1]; 0 on the separatrix, 1 for a steady rotation.
