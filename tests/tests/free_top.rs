@@ -5,6 +5,7 @@ use integrator::real::Single;
 use integrator::rotation::Rotation;
 use nalgebra::Vector3;
 use studies::special::free_top::FreeTop;
+use studies::special::lagrange_top::LagrangeTop;
 use studies::special::sphere_torque::SphereTop;
 use studies::special::symmetric_top::SymmetricTop;
 use verification::reference::{self, Reference, Row};
@@ -88,5 +89,18 @@ fn spheres_under_a_constant_torque_agree_with_the_reference() {
         worst_over::<f64>(&case, "wwx", |t| sphere.at(t), |_| 2.0 * f64::EPSILON);
         // The series in segments lose 1e-30 (1 + |Z|), Z = |tau| t^2 / (2 I) <= 256.
         worst_over::<fx128>(&case, "wwx", |t| sphere.at(t), |t| 1e-29 * (1.0 + t * t / 4.0));
+    }
+}
+
+#[test]
+fn heavy_tops_agree_with_the_reference() {
+    for set in reference::sets("lagrange_top") {
+        let case = reference::load("lagrange_top", &set);
+        let omega = case.vector("wb0");
+        let [i1, i3, mgl] = ["I1", "I3", "mgl"].map(|name| case.number(name));
+        let top = LagrangeTop::new(i1, i3, mgl, case.vector("q0"), omega);
+        println!("lagrange_top {set}");
+        worst_over::<f64>(&case, "wbx", |t| top.at(t), |_| 2.0 * f64::EPSILON);
+        worst_over::<fx128>(&case, "wbx", |t| top.at(t), double_double(Vector3::from(omega).norm()));
     }
 }

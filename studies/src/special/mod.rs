@@ -11,5 +11,6 @@ pub mod free_top;
 pub mod jacobi;
 pub mod kepler;
 pub mod kummer;
+pub mod lagrange_top;
 pub mod sphere_torque;
 pub mod symmetric_top;
