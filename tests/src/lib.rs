@@ -1,7 +1,9 @@
 //! Shared helpers of the tests. The tests themselves are the files of `tests/tests/`.
 
 mod decimal;
+mod difference;
 pub mod reference;
 pub mod table;
 
 pub use decimal::parse_fx128;
+pub use difference::derivative;

@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use studies::special::free_top::FreeTop;
 use studies::special::symmetric_top::SymmetricTop;
+use verification::derivative;
 
 const EPS: f64 = <fx128 as Single>::EPSILON;
 
@@ -95,21 +96,6 @@ fn body() -> impl Strategy<Value = Body> {
             Body { inertia, attitude, omega }
         },
     )
-}
-
-/// f'(0) by the central difference of order 8, whose error is h^8 f''''''''' / 630.
-fn derivative<const N: usize>(h: f64, f: impl Fn(fx128) -> [fx128; N]) -> [fx128; N] {
-    let weight = |n: f64, d: f64| dd(n) / dd(d);
-    let weights = [weight(4.0, 5.0), weight(-1.0, 5.0), weight(4.0, 105.0), weight(-1.0, 280.0)];
-    let mut sum = [fx128::ZERO; N];
-    for (k, &w) in weights.iter().enumerate() {
-        let x = dd(h * (k as f64 + 1.0));
-        let (ahead, behind) = (f(x), f(-x));
-        for i in 0..N {
-            sum[i] += w * (ahead[i] - behind[i]) / dd(h);
-        }
-    }
-    sum
 }
 
 proptest! {

@@ -8,6 +8,7 @@ use studies::special::jacobi::{Jacobi, Modulus, am, jacobi};
 use studies::special::kepler::eccentric_anomaly;
 use studies::special::kummer::hypergeometric_1f1;
 use studies::special::{elementary, elliptic};
+use verification::derivative;
 
 const EPS: f64 = <fx128 as Single>::EPSILON;
 
@@ -18,14 +19,6 @@ fn dd(x: f64) -> fx128 {
 /// |x|, infinite for NaN, so that a comparison with a bound fails.
 fn size(x: fx128) -> f64 {
     if x.is_finite() { x.0.abs() } else { f64::INFINITY }
-}
-
-/// f'(0) by the central difference of order 8, whose error is h^8 f''''''''' / 630.
-fn derivative(h: f64, f: impl Fn(fx128) -> fx128) -> fx128 {
-    let weight = |n: f64, d: f64| dd(n) / dd(d);
-    let weights = [weight(4.0, 5.0), weight(-1.0, 5.0), weight(4.0, 105.0), weight(-1.0, 280.0)];
-    let difference = |k: usize| f(dd(h * (k as f64 + 1.0))) - f(dd(-h * (k as f64 + 1.0)));
-    (0..4).fold(fx128::ZERO, |sum, k| sum + weights[k] * difference(k)) / dd(h)
 }
 
 /// mc from 1e-25 to 1, and the circular limit itself.
@@ -65,7 +58,7 @@ proptest! {
     /// am' = dn: h = 2^-10, derivatives of am of order 9 below 5000 (0 < m <= 1): 2^-80 * 5000 / 630, and rounding 4 eps |am| / h.
     #[test]
     fn the_amplitude_has_the_slope_dn(u in -1000.0..1000.0_f64, mc in parameter()) {
-        let slope = derivative(2.0_f64.powi(-10), |h| am(dd(u) + h, mc));
+        let [slope] = derivative(2.0_f64.powi(-10), |h| [am(dd(u) + h, mc)]);
         let error = size(slope - jacobi(dd(u), mc).dn);
         prop_assert!(error <= 8.0 * 2.0_f64.powi(-80) + 4096.0 * EPS * (1.0 + u.abs()), "{error:e}");
     }
@@ -99,9 +92,9 @@ proptest! {
         let h = 2.0_f64.powi(-11);
         // The integrands vary on the scale of the nearer zero of d or 1 - n s^2: at least 0.3, so 9th derivatives are below 9!/0.3^9.
         let bound = h.powi(8) * 362_880.0 / 0.3_f64.powi(9) / 630.0 + 1e-26;
-        let slope = derivative(h, |x| elliptic::pi(dd(nc), dd(phi) + x, dd(mc)));
+        let [slope] = derivative(h, |x| [elliptic::pi(dd(nc), dd(phi) + x, dd(mc))]);
         prop_assert!(size(slope - dd(1.0) / (characteristic * d)) <= 30.0 * bound, "{:?} {bound:e}", slope - dd(1.0) / (characteristic * d));
-        let slope = derivative(h, |x| elliptic::e(dd(phi) + x, dd(mc)));
+        let [slope] = derivative(h, |x| [elliptic::e(dd(phi) + x, dd(mc))]);
         prop_assert!(size(slope - d) <= 30.0 * bound, "{:?}", slope - d);
     }
 
