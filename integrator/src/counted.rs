@@ -39,6 +39,10 @@ impl<T: Real, M: Model<T>> Model<T> for Counted<M> {
         self.count();
         self.inner.rate(t, s)
     }
+    fn kick(&self, t: T, h: T, s: &State<M::Config>) -> Tangent<Self, T> {
+        self.count();
+        self.inner.kick(t, h, s)
+    }
     fn velocity(&self, q: M::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
         self.inner.velocity(q, v)
     }

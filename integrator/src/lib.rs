@@ -31,6 +31,7 @@
 
 pub mod counted;
 pub mod drive;
+pub mod lanes;
 pub mod methods;
 pub mod model;
 pub mod newton;

@@ -1,7 +1,7 @@
 //! [`State`], [`Model`] and [`Method`]: what moves, by which law, by which rule.
 
 use crate::real::Real;
-use crate::space::Space;
+use crate::space::{Space, Vector};
 
 /// The tangent of a model's configuration space.
 pub type Tangent<M, T> = <<M as Model<T>>::Config as Space>::Tangent;
@@ -19,7 +19,6 @@ impl<Q: Space> State<Q> {
     /// Whether every number of the state is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
-        use crate::space::Vector;
         self.q.is_finite() && self.v.is_finite()
     }
 
@@ -38,6 +37,13 @@ pub trait Model<T: Real> {
 
     /// dv/dt.
     fn rate(&self, t: T, s: &State<Self::Config>) -> Tangent<Self, T>;
+
+    /// v + h rate(t, q, v): the kick of both Eulers. A model may write it out where that saves a multiplication, as
+    /// v + (h c) q for a rate c q.
+    #[inline(always)]
+    fn kick(&self, t: T, h: T, s: &State<Self::Config>) -> Tangent<Self, T> {
+        s.v.plus(self.rate(t, s), h)
+    }
 
     /// The velocity of the configuration: v itself, unless what is stored is a momentum.
     #[inline(always)]
@@ -58,6 +64,10 @@ impl<T: Real, M: Model<T>> Model<T> for &M {
     #[inline(always)]
     fn rate(&self, t: T, s: &State<Self::Config>) -> Tangent<Self, T> {
         (**self).rate(t, s)
+    }
+    #[inline(always)]
+    fn kick(&self, t: T, h: T, s: &State<Self::Config>) -> Tangent<Self, T> {
+        (**self).kick(t, h, s)
     }
     #[inline(always)]
     fn velocity(&self, q: Self::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {

@@ -72,7 +72,7 @@ impl<F: Frame> Update for Exponential<F> {
     type Frame = F;
     #[inline(always)]
     fn increment<T: Real>(omega: Vector3<T>, h: T) -> Rotation<T> {
-        Rotation::exp(omega * h)
+        Rotation::turned(omega, h)
     }
 }
 

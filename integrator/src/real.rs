@@ -74,40 +74,60 @@ pub trait Single: Real + PartialOrd {
     fn round(self) -> Self;
 }
 
-/// Taylor sums of cos x and sin x / x in x^2, highest coefficient first, for |x| <= 1/2.
+/// Taylor coefficients of cos x and sin x / x in x^2, for |x| <= 1/4: half a radian a step.
 ///
-/// The first term left out is x^16/16! < 8e-19 (f64) and x^10/10! < 3e-10 (f32, six terms).
-const COS: [f64; 8] = [
-    -1.0 / 87_178_291_200.0,
-    1.0 / 479_001_600.0,
-    -1.0 / 3_628_800.0,
-    1.0 / 40_320.0,
-    -1.0 / 720.0,
-    1.0 / 24.0,
-    -0.5,
-    1.0,
-];
-const SINC: [f64; 8] = [
-    -1.0 / 1_307_674_368_000.0,
-    1.0 / 6_227_020_800.0,
-    -1.0 / 39_916_800.0,
-    1.0 / 362_880.0,
-    -1.0 / 5_040.0,
-    1.0 / 120.0,
-    -1.0 / 6.0,
-    1.0,
-];
+/// The first terms left out are x^14/14! < 5e-20 and x^12/13! < 1e-17 (f64), x^10/10! < 3e-13 and x^8/9! < 5e-11 (f32).
+const COS: [f64; 7] = [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
+const SINC: [f64; 6] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5_040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
 /// Largest x^2 for which the Taylor sums are used.
-const TAYLOR_BOUND: f64 = 0.25;
+pub(crate) const TAYLOR_BOUND: f64 = 0.0625;
 
+/// c0 + c1 x + ... for at most eight coefficients by Estrin's scheme: as many operations as Horner's, half as deep.
 #[inline(always)]
-fn horner<T: Real>(coefficients: &[f64], x: T) -> T {
-    let (first, rest) = coefficients.split_first().expect("the tables above are not empty");
-    rest.iter().fold(T::lit(*first), |sum, &c| sum.mul_add(x, T::lit(c)))
+fn polynomial<T: Real>(c: &[f64], [x, x2, x4]: [T; 3]) -> T {
+    let one = |i: usize| T::lit(c[i]);
+    let two = |i: usize| if i + 1 < c.len() { one(i + 1).mul_add(x, one(i)) } else { one(i) };
+    let four = |i: usize| if i + 2 < c.len() { two(i + 2).mul_add(x2, two(i)) } else { two(i) };
+    if c.len() > 4 { four(4).mul_add(x4, four(0)) } else { four(0) }
 }
 
+/// (cos x, sin x / x) for x^2 <= [`TAYLOR_BOUND`], without the last `SKIP` terms of the sums: 53 bits with none left out.
+#[inline(always)]
+pub(crate) fn taylor_cos_sinc<T: Real, const SKIP: usize>(x_squared: T) -> (T, T) {
+    let square = x_squared * x_squared;
+    let powers = [x_squared, square, square * square];
+    (polynomial(&COS[..COS.len() - SKIP], powers), polynomial(&SINC[..SINC.len() - SKIP], powers))
+}
+
+/// The same for larger x: k times halved, summed and doubled back by cos 2x = 1 - 2 x^2 sinc(x)^2, sinc 2x = sinc x cos x.
+///
+/// The error is that of the angle, about |x| EPSILON. Arithmetic alone, without a call to a library: the compiler can see
+/// that it has no effect, and drops it with an attitude that nobody asks for.
+#[cold]
+#[inline(never)]
+pub(crate) fn doubled_cos_sinc<T: Real, const SKIP: usize>(x_squared: T, size: f64) -> (T, T) {
+    let mut halvings = 0;
+    let mut bound = TAYLOR_BOUND;
+    while halvings < MOST_HALVINGS && size > bound {
+        bound *= 4.0;
+        halvings += 1;
+    }
+    let mut scaled = x_squared * T::lit(TAYLOR_BOUND / bound);
+    let (mut cosine, mut sinc) = taylor_cos_sinc::<T, SKIP>(scaled);
+    for _ in 0..halvings {
+        let half_sinc = sinc;
+        sinc = half_sinc * cosine;
+        cosine = T::lit(1.0) - scaled * half_sinc * half_sinc * T::lit(2.0);
+        scaled *= T::lit(4.0);
+    }
+    (cosine, sinc)
+}
+
+/// 4^64 > 1e38: nobody turns by more in a step, and an infinite argument ends too.
+const MOST_HALVINGS: u32 = 64;
+
 macro_rules! real_for_primitive {
-    ($t:ty, $terms:literal, $sin:path, $cos:path, $exp:path, $ln:path, $atan2:path) => {
+    ($t:ty, $skip:literal, $sin:path, $cos:path, $exp:path, $ln:path, $atan2:path) => {
         impl Real for $t {
             #[inline(always)]
             fn lit(x: f64) -> Self {
@@ -127,17 +147,10 @@ macro_rules! real_for_primitive {
             }
             #[inline(always)]
             fn cos_sinc(x_squared: Self) -> (Self, Self) {
-                #[cold]
-                #[inline(never)]
-                fn by_sine_and_cosine(x_squared: $t) -> ($t, $t) {
-                    let x = x_squared.sqrt();
-                    ($cos(x), $sin(x) / x)
-                }
                 if x_squared <= TAYLOR_BOUND as $t {
-                    let skip = 8 - $terms;
-                    (horner(&COS[skip..], x_squared), horner(&SINC[skip..], x_squared))
+                    taylor_cos_sinc::<Self, $skip>(x_squared)
                 } else {
-                    by_sine_and_cosine(x_squared)
+                    doubled_cos_sinc::<Self, $skip>(x_squared, f64::from(x_squared))
                 }
             }
             #[inline(always)]
@@ -180,8 +193,8 @@ macro_rules! real_for_primitive {
     };
 }
 
-real_for_primitive!(f64, 8, libm::sin, libm::cos, libm::exp, libm::log, libm::atan2);
-real_for_primitive!(f32, 6, libm::sinf, libm::cosf, libm::expf, libm::logf, libm::atan2f);
+real_for_primitive!(f64, 0, libm::sin, libm::cos, libm::exp, libm::log, libm::atan2);
+real_for_primitive!(f32, 2, libm::sinf, libm::cosf, libm::expf, libm::logf, libm::atan2f);
 
 /// pi / 2 in three parts, for the reduction of an argument.
 const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_183_4e-33];

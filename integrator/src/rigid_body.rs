@@ -116,6 +116,13 @@ fn kinematics<T: Real, U: Update, P: Vector<T>>(
     Kinematics { position: q.position, velocity, attitude: q.attitude, omega_body }
 }
 
+/// ((I2 - I3) / I1, (I3 - I1) / I2, (I1 - I2) / I3).
+#[inline(always)]
+fn gyroscopic_ratios<T: Real>(inertia: Vector3<T>) -> Vector3<T> {
+    let [a, b, c] = [inertia.x, inertia.y, inertia.z];
+    Vector3::new((b - c) / a, (c - a) / b, (a - b) / c)
+}
+
 impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Model<T> for WorldOmega<B, U> {
     type Config = Pose<T, U, B::Position>;
 
@@ -137,10 +144,16 @@ impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Model<T> for BodyOmega<B
     #[inline(always)]
     fn rate(&self, t: T, s: &State<Self::Config>) -> Twist<T, B::Position> {
         let inertia = self.0.inertia();
-        let at = kinematics(&s.q, s.v.linear, s.v.angular);
-        let gyroscopic = cross(inertia.component_mul(&s.v.angular), s.v.angular);
-        let torque = self.0.torque(t, &at).plus_in_body(s.q.attitude, gyroscopic);
-        Twist { linear: self.0.acceleration(t, &at), angular: torque.component_div(&inertia) }
+        let omega = s.v.angular;
+        let at = kinematics(&s.q, s.v.linear, omega);
+        // Euler's equations with their constants in front, (I2 - I3) / I1 ...: they do not wait for omega, and nothing cancels.
+        let products = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
+        let gyroscopic = products.component_mul(&gyroscopic_ratios(inertia));
+        let angular = match self.0.torque(t, &at) {
+            Torque::None => gyroscopic,
+            torque => gyroscopic + torque.plus_in_body(s.q.attitude, Vector3::zero()).component_div(&inertia),
+        };
+        Twist { linear: self.0.acceleration(t, &at), angular }
     }
 }
 

@@ -46,9 +46,15 @@ impl<T: Real> Rotation<T> {
     /// exp(phi): the rotation by |phi| rad about phi.
     #[inline(always)]
     pub fn exp(phi: Vector3<T>) -> Self {
-        let half = phi * T::lit(0.5);
-        let (cosine, sinc) = T::cos_sinc(dot(half, half));
-        Rotation { w: cosine, v: half * sinc }
+        Self::turned(phi, T::lit(1.0))
+    }
+
+    /// exp(omega h): what the constant angular velocity omega does in the time h.
+    #[inline(always)]
+    pub fn turned(omega: Vector3<T>, h: T) -> Self {
+        let half = h * T::lit(0.5);
+        let (cosine, sinc) = T::cos_sinc(dot(omega, omega) * (half * half));
+        Rotation { w: cosine, v: omega * (sinc * half) }
     }
 
     /// The inverse rotation.
@@ -134,9 +140,15 @@ impl<T: Real> Mul for Rotation<T> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.v, other.v);
+        let (p, q) = (self.w, other.w);
         Rotation {
-            w: self.w.mul_add(other.w, -dot(self.v, other.v)),
-            v: other.v * self.w + self.v * other.w + cross(self.v, other.v),
+            w: p.mul_add(q, -(a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z)))),
+            v: Vector3::new(
+                p.mul_add(b.x, a.x.mul_add(q, a.y.mul_add(b.z, -(a.z * b.y)))),
+                p.mul_add(b.y, a.y.mul_add(q, a.z.mul_add(b.x, -(a.x * b.z)))),
+                p.mul_add(b.z, a.z.mul_add(q, a.x.mul_add(b.y, -(a.y * b.x)))),
+            ),
         }
     }
 }

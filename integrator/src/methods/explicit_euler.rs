@@ -1,6 +1,6 @@
 use crate::model::{Method, Model, State};
 use crate::real::Real;
-use crate::space::{Space, Vector};
+use crate::space::Space;
 
 /// Explicit (forward) Euler: q1 = q0 + h velocity(q0, v0), v1 = v0 + h rate(t0, q0, v0). Order 1, one evaluation.
 ///
@@ -12,6 +12,6 @@ pub struct ExplicitEuler;
 impl<T: Real, M: Model<T>> Method<T, M> for ExplicitEuler {
     #[inline(always)]
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
-        State { q: s.q.retract(m.velocity(s.q, s.v), h), v: s.v.plus(m.rate(t, &s), h) }
+        State { q: s.q.retract(m.velocity(s.q, s.v), h), v: m.kick(t, h, &s) }
     }
 }
