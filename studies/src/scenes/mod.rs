@@ -1,13 +1,25 @@
 //! The one list of scenes. A new scene is one file beside this one, and one line in [`catalogue`].
 
+pub mod box_tumbling;
 pub mod constant_force;
+pub mod heavy_top;
+pub mod manufactured;
 pub mod oscillator;
 pub mod parameters;
+pub mod principal_axis_torque;
 mod rigid;
+pub mod sphere_torque;
+pub mod symmetric_top;
 pub mod torque_free_spin;
 
+pub use box_tumbling::BoxTumbling;
 pub use constant_force::ConstantForce;
+pub use heavy_top::HeavyTop;
+pub use manufactured::Manufactured;
 pub use oscillator::Oscillator;
+pub use principal_axis_torque::PrincipalAxisTorque;
+pub use sphere_torque::SphereTorque;
+pub use symmetric_top::SymmetricTop;
 pub use torque_free_spin::TorqueFreeSpin;
 
 use crate::error::Error;
@@ -28,7 +40,15 @@ macro_rules! list {
 list! {
     "constant-force" => Particles(ConstantForce::default());
     "oscillator" => Particles(Oscillator::default());
+    "principal-axis-torque" => Rigid(PrincipalAxisTorque::default());
+    "sphere-torque" => Rigid(SphereTorque::default());
+    "symmetric-top/disc" => Rigid(SymmetricTop::disc());
+    "symmetric-top/rod" => Rigid(SymmetricTop::rod());
     "torque-free-spin" => Rigid(TorqueFreeSpin::default());
+    "tennis-racket" => Rigid(TorqueFreeSpin::tennis_racket());
+    "heavy-top" => Rigid(HeavyTop::default());
+    "manufactured" => Rigid(Manufactured::default());
+    "box-tumbling" => Rigid(BoxTumbling::default());
 }
 
 /// The scene of that name, with its default parameters.

@@ -28,6 +28,13 @@ scene_parameters! {
     }
 }
 
+impl TorqueFreeSpin {
+    /// Started near the unstable axis of the intermediate moment, about which it tumbles.
+    pub fn tennis_racket() -> Self {
+        Self { inertia: [0.75, 1.0, 1.5], omega: [0.0625, 2.5, -0.125], ..Self::default() }
+    }
+}
+
 impl<T: Real> RigidBody<T> for TorqueFreeSpin {
     type Position = Fixed<T>;
 
