@@ -121,7 +121,9 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     let expected = first.theory_order.map_or(Expected::Exact, |order| Expected::Order { order, tolerance });
     // The scale may vanish where a quantity passes through zero; one unit of it stands in.
     let scale = if first.scale > 0.0 { first.scale } else { 1.0 };
-    let limits = Limits { rounding_unit: first.precision.epsilon() * scale, saturation: scale };
+    // One operation on the state where an order is sought; where there is no error but rounding, that of a whole run.
+    let operations = if first.theory_order.is_none() { first.steps as f64 } else { 1.0 };
+    let limits = Limits { rounding_unit: operations * first.precision.epsilon() * scale, saturation: scale };
     let seen = order::observe(&samples, expected, limits);
     let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
     let constant = seen.window.zip(first.theory_order).and_then(|(window, p)| {

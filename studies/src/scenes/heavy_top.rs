@@ -72,7 +72,7 @@ impl Scene for HeavyTop {
             source: "Lagrange 1788, by elliptic integrals",
             horizon_s: 1.75,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 16,
+            coarsest_steps: 8,
         }
     }
 

@@ -70,18 +70,37 @@ impl Manufactured {
         let (mut omega, mut omega_rate) = (Vector3::repeat(T::lit(0.0)), Vector3::repeat(T::lit(0.0)));
         for k in 0..3 {
             let along = |size: T| Vector3::from_fn(|i, _| if i == k { size } else { T::lit(0.0) });
-            let factor = Rotation::exp(along(rates[k] * t + tilts[k] * wave[0]));
-            let turning = along(rates[k] + tilts[k] * wave[1]);
+            let rate = rates[k] + tilts[k] * wave[1];
+            let half = ((rates[k] * t + tilts[k] * wave[0]) * T::lit(0.5)).sin_cos();
             // omega = F^T omega + theta' e_k, and the derivative of it.
-            let carried = factor.rotate_back(omega);
-            omega_rate = factor.rotate_back(omega_rate) - cross(turning, carried) + along(tilts[k] * wave[2]);
-            omega = carried + turning;
-            attitude = attitude * factor;
+            let carried = turned_back(k, half, omega);
+            omega_rate =
+                turned_back(k, half, omega_rate) - along_axis_cross(k, rate, carried) + along(tilts[k] * wave[2]);
+            omega = carried + along(rate);
+            attitude = attitude * Rotation { w: half.1, v: along(half.0) };
         }
         let position = lit::<T>(self.x0) + v0 * t + swing * wave[0];
         let at = Kinematics { position, velocity: v0 + swing * wave[1], attitude, omega_body: omega };
         Prescribed { at, acceleration: swing * wave[2], omega_rate_body: omega_rate }
     }
+}
+
+/// F^T v, F the rotation about e_k with the given sine and cosine of half its angle. Six products instead of thirty.
+fn turned_back<T: Real>(k: usize, (sine, cosine): (T, T), v: Vector3<T>) -> Vector3<T> {
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    let twice = sine * T::lit(2.0);
+    let (s, c) = (twice * cosine, T::lit(1.0) - twice * sine);
+    let mut turned = v;
+    (turned[i], turned[j]) = (c * v[i] + s * v[j], c * v[j] - s * v[i]);
+    turned
+}
+
+/// rate e_k x v.
+fn along_axis_cross<T: Real>(k: usize, rate: T, v: Vector3<T>) -> Vector3<T> {
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    let mut product = Vector3::repeat(T::lit(0.0));
+    (product[i], product[j]) = (-(rate * v[j]), rate * v[i]);
+    product
 }
 
 impl<T: Real> RigidBody<T> for Manufactured {
@@ -130,7 +149,7 @@ impl Scene for Manufactured {
             source: "manufactured solution (Roache 2002)",
             horizon_s: 1.75,
             time_scale_s: 1.0 / self.frequency,
-            coarsest_steps: 8,
+            coarsest_steps: 4,
         }
     }
 
