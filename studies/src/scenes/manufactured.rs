@@ -1,15 +1,16 @@
 //! A manufactured motion: a smooth path and attitude are prescribed, and the loads follow from the equations of motion.
 //!
-//! x* = x0 + v0 t + swing sin(nu t); R* = R0 exp(theta_1 e1) exp(theta_2 e2) exp(theta_3 e3), theta_k = rate_k t +
-//! tilt_k sin(nu t). The loads that produce it are m x*'' and I omega*' + omega* x I omega*; terms that vanish on it make the
+//! x* = x0 + v0 t + swing sin(nu t); the attitude is that of the quaternion p = a + b sin(nu t) + c cos(nu t), normalised:
+//! omega = 2 Im(p* p') / |p|^2, omega' = 2 Im(p* p'') / |p|^2 - 2 omega (p . p') / |p|^2, in the body frame.
+//! The loads that produce it are m x*'' and I omega*' + omega* x I omega*; terms that vanish on it make the
 //! right-hand side depend on everything: springs and dampers towards the path, attitude in the force, position in the
 //! torque. (P. J. Roache, Code verification by the method of manufactured solutions, J. Fluids Eng. 124 (2002) 4-10.)
 
 use faer::fx128;
 use integrator::rigid_body::{Kinematics, RigidBody, Torque};
-use integrator::rotation::cross;
+use integrator::rotation::{cross, dot};
 use integrator::{Real, Rotation, Single};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 
 use crate::error::Error;
 use crate::observation::Observation;
@@ -25,18 +26,18 @@ scene_parameters! {
         mass: f64 = 1.5, "kg", Positive;
         /// Principal moments of inertia.
         inertia: [f64; 3] = [1.25, 0.75, 1.75], "kg m^2", Positive;
-        /// Factor R0 of the attitude as a quaternion (w, x, y, z), normalised before use.
+        /// Quaternion a, about which the attitude swings.
         attitude: [f64; 4] = [0.5, -0.75, 1.0, 0.25], "1", Finite;
+        /// Quaternion b of its swing with the sine.
+        sine: [f64; 4] = [0.25, 0.5, -0.125, 0.25], "1", Finite;
+        /// Quaternion c of its swing with the cosine, |b| + |c| < |a|.
+        cosine: [f64; 4] = [-0.25, 0.125, 0.25, -0.5], "1", Finite;
         /// Position at the start.
         x0: [f64; 3] = [0.5, -1.25, 2.0], "m", Finite;
         /// Mean velocity.
         v0: [f64; 3] = [1.0, 0.75, -0.5], "m/s", Finite;
         /// Amplitude of the swing of the position.
         swing: [f64; 3] = [-0.5, 0.25, 0.75], "m", Finite;
-        /// Mean rates of the three angles.
-        rates: [f64; 3] = [0.75, -0.5, 1.25], "rad/s", Finite;
-        /// Amplitudes of the swing of the three angles.
-        tilts: [f64; 3] = [0.5, 0.75, -0.25], "rad", Finite;
         /// Angular frequency nu of all swings.
         frequency: f64 = 1.5, "rad/s", Positive;
         /// Stiffness towards the path over the mass; as torque over the moments of inertia, the same.
@@ -61,46 +62,32 @@ impl Manufactured {
     fn prescribed<T: Real>(&self, t: T) -> Prescribed<T> {
         let nu = T::lit(self.frequency);
         let (sine, cosine) = (nu * t).sin_cos();
-        // sin(nu t) and its first two derivatives.
-        let wave = [sine, nu * cosine, -(nu * nu * sine)];
-        let (v0, swing) = (lit::<T>(self.v0), lit::<T>(self.swing));
-        let (rates, tilts) = (lit::<T>(self.rates), lit::<T>(self.tilts));
+        // sin(nu t) and cos(nu t) with their first and second derivatives.
+        let sines = [sine, nu * cosine, -(nu * nu * sine)];
+        let cosines = [cosine, -(nu * sine), -(nu * nu * cosine)];
+        let swinging = |k: usize| plus(quaternion(self.sine, sines[k]), quaternion(self.cosine, cosines[k]));
+        let p = plus(quaternion(self.attitude, T::lit(1.0)), swinging(0));
+        let (first, second) = (swinging(1), swinging(2));
+        let twice = T::lit(2.0) / p.norm_squared();
+        let omega = (p.conjugate() * first).v * twice;
+        let along = (p.w * first.w + dot(p.v, first.v)) * twice;
+        let omega_rate_body = (p.conjugate() * second).v * twice - omega * along;
 
-        let mut attitude = Rotation::from_wxyz(self.attitude.map(T::lit));
-        let (mut omega, mut omega_rate) = (Vector3::repeat(T::lit(0.0)), Vector3::repeat(T::lit(0.0)));
-        for k in 0..3 {
-            let along = |size: T| Vector3::from_fn(|i, _| if i == k { size } else { T::lit(0.0) });
-            let rate = rates[k] + tilts[k] * wave[1];
-            let half = ((rates[k] * t + tilts[k] * wave[0]) * T::lit(0.5)).sin_cos();
-            // omega = F^T omega + theta' e_k, and the derivative of it.
-            let carried = turned_back(k, half, omega);
-            omega_rate =
-                turned_back(k, half, omega_rate) - along_axis_cross(k, rate, carried) + along(tilts[k] * wave[2]);
-            omega = carried + along(rate);
-            attitude = attitude * Rotation { w: half.1, v: along(half.0) };
-        }
-        let position = lit::<T>(self.x0) + v0 * t + swing * wave[0];
-        let at = Kinematics { position, velocity: v0 + swing * wave[1], attitude, omega_body: omega };
-        Prescribed { at, acceleration: swing * wave[2], omega_rate_body: omega_rate }
+        let (v0, swing) = (lit::<T>(self.v0), lit::<T>(self.swing));
+        let position = lit::<T>(self.x0) + v0 * t + swing * sines[0];
+        let velocity = v0 + swing * sines[1];
+        let at = Kinematics { position, velocity, attitude: p.normalized(), omega_body: omega };
+        Prescribed { at, acceleration: swing * sines[2], omega_rate_body }
     }
 }
 
-/// F^T v, F the rotation about e_k with the given sine and cosine of half its angle. Six products instead of thirty.
-fn turned_back<T: Real>(k: usize, (sine, cosine): (T, T), v: Vector3<T>) -> Vector3<T> {
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let twice = sine * T::lit(2.0);
-    let (s, c) = (twice * cosine, T::lit(1.0) - twice * sine);
-    let mut turned = v;
-    (turned[i], turned[j]) = (c * v[i] + s * v[j], c * v[j] - s * v[i]);
-    turned
+/// `size` times a quaternion, not normalised.
+fn quaternion<T: Real>([w, x, y, z]: [f64; 4], size: T) -> Rotation<T> {
+    Rotation { w: T::lit(w) * size, v: lit::<T>([x, y, z]) * size }
 }
 
-/// rate e_k x v.
-fn along_axis_cross<T: Real>(k: usize, rate: T, v: Vector3<T>) -> Vector3<T> {
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let mut product = Vector3::repeat(T::lit(0.0));
-    (product[i], product[j]) = (-(rate * v[j]), rate * v[i]);
-    product
+fn plus<T: Real>(a: Rotation<T>, b: Rotation<T>) -> Rotation<T> {
+    Rotation { w: a.w + b.w, v: a.v + b.v }
 }
 
 impl<T: Real> RigidBody<T> for Manufactured {
@@ -154,7 +141,17 @@ impl Scene for Manufactured {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("manufactured", self.inertia, self.attitude)
+        rigid::check("manufactured", self.inertia, self.attitude)?;
+        let [a, b, c] = [self.attitude, self.sine, self.cosine].map(|q| Vector4::from(q).norm());
+        if b + c >= a {
+            return Err(Error::Parameter {
+                scene: "manufactured".to_owned(),
+                parameter: "attitude".to_owned(),
+                value: format!("of norm {a}"),
+                expected: format!("must be longer than sine and cosine together, {}", b + c),
+            });
+        }
+        Ok(())
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
