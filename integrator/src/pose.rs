@@ -19,6 +19,10 @@ pub trait Frame: Copy + Debug + Send + Sync + 'static {
     fn compose<T: Real>(q: Rotation<T>, dq: Rotation<T>) -> Rotation<T>;
     /// The Lie bracket of two angular velocities in this frame.
     fn bracket<T: Real>(a: Vector3<T>, b: Vector3<T>) -> Vector3<T>;
+    /// World components of a vector given in this frame.
+    fn to_world<T: Real>(q: Rotation<T>, a: Vector3<T>) -> Vector3<T>;
+    /// Body components of a vector given in this frame.
+    fn to_body<T: Real>(q: Rotation<T>, a: Vector3<T>) -> Vector3<T>;
 }
 
 /// World components: q' = (0, omega) q / 2, increments multiply from the left, [a, b] = a x b.
@@ -38,6 +42,14 @@ impl Frame for World {
     fn bracket<T: Real>(a: Vector3<T>, b: Vector3<T>) -> Vector3<T> {
         cross(a, b)
     }
+    #[inline(always)]
+    fn to_world<T: Real>(_q: Rotation<T>, a: Vector3<T>) -> Vector3<T> {
+        a
+    }
+    #[inline(always)]
+    fn to_body<T: Real>(q: Rotation<T>, a: Vector3<T>) -> Vector3<T> {
+        q.rotate_back(a)
+    }
 }
 
 impl Frame for Body {
@@ -48,6 +60,14 @@ impl Frame for Body {
     #[inline(always)]
     fn bracket<T: Real>(a: Vector3<T>, b: Vector3<T>) -> Vector3<T> {
         cross(b, a)
+    }
+    #[inline(always)]
+    fn to_world<T: Real>(q: Rotation<T>, a: Vector3<T>) -> Vector3<T> {
+        q.rotate(a)
+    }
+    #[inline(always)]
+    fn to_body<T: Real>(_q: Rotation<T>, a: Vector3<T>) -> Vector3<T> {
+        a
     }
 }
 

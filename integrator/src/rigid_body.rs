@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use nalgebra::Vector3;
 
 use crate::model::{Model, State};
-use crate::pose::{Body, Exponential, Pose, Twist, Update, World};
+use crate::pose::{Body, Exponential, Frame, Pose, Twist, Update, World};
 use crate::real::Real;
 use crate::rotation::{Rotation, cross};
 use crate::space::Vector;
@@ -105,6 +105,115 @@ macro_rules! constructor {
     )*};
 }
 constructor!(WorldOmega, BodyOmega, WorldMomentum, WithoutGyroscopicTerm);
+
+/// Which angular quantity a model of a rigid body stores.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Storage {
+    /// [`WorldOmega`].
+    #[default]
+    WorldOmega,
+    /// [`BodyOmega`].
+    BodyOmega,
+    /// [`WorldMomentum`].
+    WorldMomentum,
+    /// [`WithoutGyroscopicTerm`].
+    WithoutGyroscopicTerm,
+}
+
+impl Storage {
+    /// Every one.
+    pub const ALL: [Storage; 4] =
+        [Storage::WorldOmega, Storage::BodyOmega, Storage::WorldMomentum, Storage::WithoutGyroscopicTerm];
+
+    /// The name on the command line and in tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Storage::WorldOmega => "world-omega",
+            Storage::BodyOmega => "body-omega",
+            Storage::WorldMomentum => "world-momentum",
+            Storage::WithoutGyroscopicTerm => "without-gyroscopic-term",
+        }
+    }
+}
+
+/// How the attitude is advanced by an angular velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum AttitudeUpdate {
+    /// [`Exponential`].
+    #[default]
+    Exponential,
+    /// [`Linear`](crate::pose::Linear).
+    Linear,
+}
+
+impl AttitudeUpdate {
+    /// Every one.
+    pub const ALL: [AttitudeUpdate; 2] = [AttitudeUpdate::Exponential, AttitudeUpdate::Linear];
+
+    /// The name on the command line and in tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            AttitudeUpdate::Exponential => "exponential",
+            AttitudeUpdate::Linear => "linear",
+        }
+    }
+}
+
+/// A model of a rigid body, whatever it stores.
+pub trait RigidModel<T: Real>:
+    Model<T, Config = Pose<T, Self::Update, <Self::Body as RigidBody<T>>::Position>>
+{
+    /// The physics.
+    type Body: RigidBody<T>;
+    /// Frame of the angular velocity, and how it advances the attitude.
+    type Update: Update;
+
+    /// The physics.
+    fn body(&self) -> &Self::Body;
+
+    /// What is stored of a body with this attitude and angular velocity.
+    fn stored(&self, attitude: Rotation<T>, omega_body: Vector3<T>) -> Vector3<T>;
+
+    /// The state of a body that moves like this.
+    #[inline(always)]
+    fn state(&self, at: &Kinematics<T, <Self::Body as RigidBody<T>>::Position>) -> State<Self::Config> {
+        let v = Twist { linear: at.velocity, angular: self.stored(at.attitude, at.omega_body) };
+        State { q: Pose::new(at.position, at.attitude), v }
+    }
+
+    /// How a body in this state moves.
+    #[inline(always)]
+    fn kinematics(&self, s: &State<Self::Config>) -> Kinematics<T, <Self::Body as RigidBody<T>>::Position> {
+        let angular = self.velocity(s.q, s.v).angular;
+        let omega_body = <Self::Update as Update>::Frame::to_body(s.q.attitude, angular);
+        kinematics(&s.q, s.v.linear, omega_body)
+    }
+}
+
+macro_rules! rigid_model {
+    ($($model:ident, $frame:ident, $stored:expr;)*) => {$(
+        impl<T: Real, B: RigidBody<T>, U: Update<Frame = $frame>> RigidModel<T> for $model<B, U> {
+            type Body = B;
+            type Update = U;
+
+            #[inline(always)]
+            fn body(&self) -> &B {
+                &self.0
+            }
+            #[inline(always)]
+            fn stored(&self, attitude: Rotation<T>, omega_body: Vector3<T>) -> Vector3<T> {
+                let stored: fn(Vector3<T>, Rotation<T>, Vector3<T>) -> Vector3<T> = $stored;
+                stored(self.0.inertia(), attitude, omega_body)
+            }
+        }
+    )*};
+}
+rigid_model! {
+    WorldOmega, World, |_, attitude, omega| attitude.rotate(omega);
+    BodyOmega, Body, |_, _, omega| omega;
+    WorldMomentum, World, |inertia, attitude, omega| attitude.rotate(inertia.component_mul(&omega));
+    WithoutGyroscopicTerm, World, |_, attitude, omega| attitude.rotate(omega);
+}
 
 /// Kinematics of a state whose angular velocity in the body frame is known.
 #[inline(always)]

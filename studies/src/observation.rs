@@ -1,7 +1,8 @@
 //! What can be measured of a motion, in double-double whatever arithmetic the run used.
 
 use faer::fx128;
-use integrator::pose::{Pose, Update};
+use integrator::pose::{Frame, Update};
+use integrator::rigid_body::{Kinematics, RigidModel};
 use integrator::{Real, Rotation, Single, State, Vector};
 use nalgebra::{SMatrix, Vector3};
 use serde::{Deserialize, Serialize};
@@ -79,18 +80,32 @@ impl Observation {
         Observation { values: vec![(q, vector(&s.q)), (v, vector(&s.v))], norm_error: 0.0 }
     }
 
-    /// A rigid body whose angular velocity in the world frame is `omega_world`.
-    pub fn rigid<T: Single, U: Update, P: Vector<T>>(q: &Pose<T, U, P>, velocity: &P, omega_world: Vector3<T>) -> Self {
-        let raw = widen(q.attitude);
-        let norm = raw.norm_squared().sqrt();
+    /// A rigid body, whatever its model stores.
+    pub fn of_body<T: Single, M: RigidModel<T>>(model: &M, s: &State<M::Config>) -> Self {
+        let angular = model.velocity(s.q, s.v).angular.map(Single::widen);
+        let omega_world = <M::Update as Update>::Frame::to_world(widen(s.q.attitude).normalized(), angular);
+        Self::rigid(&s.q.position, &s.v.linear, widen(s.q.attitude), omega_world)
+    }
+
+    /// A rigid body that moves like this.
+    pub fn of_motion<P: Vector<fx128>>(at: &Kinematics<fx128, P>) -> Self {
+        Self::rigid(&at.position, &at.velocity, at.attitude, at.attitude.rotate(at.omega_body))
+    }
+
+    fn rigid<T: Single, P: Vector<T>>(
+        position: &P,
+        velocity: &P,
+        attitude: Rotation<fx128>,
+        omega_world: Vector3<fx128>,
+    ) -> Self {
+        let norm = attitude.norm_squared().sqrt();
         let mut values = Vec::with_capacity(4);
         if P::DIM > 0 {
-            values.push((Quantity::Position, vector(&q.position)));
+            values.push((Quantity::Position, vector(position)));
             values.push((Quantity::Velocity, vector(velocity)));
         }
-        values.push((Quantity::Attitude, Value::Rotation(raw.normalized())));
-        let omega = omega_world.iter().map(|c| c.widen()).collect();
-        values.push((Quantity::AngularVelocity, Value::Vector(omega)));
+        values.push((Quantity::Attitude, Value::Rotation(attitude.normalized())));
+        values.push((Quantity::AngularVelocity, Value::Vector(omega_world.iter().copied().collect())));
         Observation { values, norm_error: (norm - fx128::ONE).to_f64() }
     }
 

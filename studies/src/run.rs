@@ -2,13 +2,18 @@
 
 use faer::fx128;
 use integrator::counted::Counted;
-use integrator::methods::{MethodId, Visitor};
-use integrator::{Method, Single, drive};
+use integrator::methods::{MethodId, RigidStep, RigidVisitor, Visitor};
+use integrator::pose::{Body, Exponential, Linear, World};
+use integrator::rigid_body::{
+    AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WithoutGyroscopicTerm, WorldMomentum,
+    WorldOmega,
+};
+use integrator::{Method, Model, Single, State, drive};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::scene::Motion;
+use crate::scene::{Motion, RigidMotion};
 
 /// The arithmetic of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -85,11 +90,16 @@ pub fn method_from_id(id: &str) -> Result<MethodId, Error> {
     MethodId::ALL.iter().copied().find(|m| m.id() == id).ok_or_else(|| Error::unknown("method", id, known()))
 }
 
-/// What to run on a scene.
+/// What to run on a scene. `A` names the rule of a step: a [`MethodId`], or a
+/// [`RigidStep`](integrator::methods::RigidStep) for a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run {
+pub struct Run<A = MethodId> {
     /// The rule of a step.
-    pub method: MethodId,
+    pub method: A,
+    /// What a rigid body stores; a flat scene, and a step that leaves no choice, pay no heed to it.
+    pub storage: Storage,
+    /// How a rigid body's attitude is advanced.
+    pub update: AttitudeUpdate,
     /// The arithmetic.
     pub precision: Precision,
     /// End of the run, s.
@@ -98,7 +108,19 @@ pub struct Run {
     pub steps: u64,
 }
 
-impl Run {
+impl<A> Run<A> {
+    /// A run of which a rigid body stores its angular velocity in the world frame and moves by the exponential map.
+    pub fn new(method: A, precision: Precision, end_s: f64, steps: u64) -> Self {
+        let (storage, update) = (Storage::default(), AttitudeUpdate::default());
+        Run { method, storage, update, precision, end_s, steps }
+    }
+
+    /// The same with another stored quantity and another attitude update.
+    #[must_use]
+    pub fn storing(self, storage: Storage, update: AttitudeUpdate) -> Self {
+        Run { storage, update, ..self }
+    }
+
     /// The step, s.
     pub fn h_s(&self) -> f64 {
         self.end_s / self.steps as f64
@@ -137,37 +159,132 @@ impl Trajectory {
     }
 }
 
-/// Runs one model with a method chosen at run time.
+/// Runs a model of a flat space with a method chosen at run time.
 pub(crate) fn run_model<T: Single, M: Motion<T>>(model: &M, run: &Run, stride: u64) -> Trajectory {
     let counted = Counted::new(model);
-    run.method.visit(Watch { model: &counted, run, stride })
+    let seen = run.method.visit(Flat { model: &counted, motion: model, clock: Clock::of(run, stride) });
+    seen.trajectory(run.method.is_implicit(), counted.evaluations())
 }
 
-struct Watch<'a, M> {
+struct Flat<'a, M> {
     model: &'a Counted<&'a M>,
-    run: &'a Run,
+    motion: &'a M,
+    clock: Clock,
+}
+
+impl<'a, T: Single, M: Motion<T>> Visitor<T, Counted<&'a M>> for Flat<'a, M> {
+    type Output = Seen;
+
+    fn visit<A: Method<T, Counted<&'a M>>>(self, method: &A) -> Seen {
+        self.clock.drive(method, self.model, self.motion.exact(T::lit(0.0)), |s| self.motion.observe(s))
+    }
+}
+
+/// Runs a rigid body with a method, a stored quantity and an attitude update chosen at run time.
+pub(crate) fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride: u64) -> Trajectory {
+    let counted = Counted::new(body);
+    let clock = Clock::of(run, stride);
+    macro_rules! with {
+        ($model:ident, $update:ident<$frame:ident>) => {{
+            let model = $model::<_, $update<$frame>>::new(&counted);
+            run.method.visit(Turning { model: &model, start: body.exact(T::lit(0.0)), clock })
+        }};
+    }
+    use AttitudeUpdate as U;
+    let seen = match (run.storage, run.update) {
+        (Storage::WorldOmega, U::Exponential) => with!(WorldOmega, Exponential<World>),
+        (Storage::WorldOmega, U::Linear) => with!(WorldOmega, Linear<World>),
+        (Storage::BodyOmega, U::Exponential) => with!(BodyOmega, Exponential<Body>),
+        (Storage::BodyOmega, U::Linear) => with!(BodyOmega, Linear<Body>),
+        (Storage::WorldMomentum, U::Exponential) => with!(WorldMomentum, Exponential<World>),
+        (Storage::WorldMomentum, U::Linear) => with!(WorldMomentum, Linear<World>),
+        (Storage::WithoutGyroscopicTerm, U::Exponential) => with!(WithoutGyroscopicTerm, Exponential<World>),
+        (Storage::WithoutGyroscopicTerm, U::Linear) => with!(WithoutGyroscopicTerm, Linear<World>),
+    };
+    seen.trajectory(run.method.is_implicit(), counted.evaluations())
+}
+
+/// Runs a rigid body with a step that exists for rigid bodies only.
+pub(crate) fn run_step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidStep>, stride: u64) -> Trajectory {
+    let counted = Counted::new(body);
+    let turn = Turn { start: body.exact(T::lit(0.0)), clock: Clock::of(run, stride) };
+    let seen = run.method.visit::<T, _, _>(run.update, &counted, turn);
+    seen.trajectory(false, counted.evaluations())
+}
+
+/// A rigid body in what its model stores, with a general method.
+struct Turning<'a, T: Single, M: RigidModel<T>> {
+    model: &'a M,
+    start: Kinematics<T, <M::Body as RigidBody<T>>::Position>,
+    clock: Clock,
+}
+
+impl<T: Single, M: RigidModel<T>> Visitor<T, M> for Turning<'_, T, M> {
+    type Output = Seen;
+
+    fn visit<A: Method<T, M>>(self, method: &A) -> Seen {
+        self.clock.drive(method, self.model, self.model.state(&self.start), |s| Observation::of_body(self.model, s))
+    }
+}
+
+/// A rigid body whose model the step chooses.
+struct Turn<T: Single, P> {
+    start: Kinematics<T, P>,
+    clock: Clock,
+}
+
+impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<T, B::Position> {
+    type Output = Seen;
+
+    fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Seen {
+        self.clock.drive(method, model, model.state(&self.start), |s| Observation::of_body(model, s))
+    }
+}
+
+/// When to step, and when to look.
+#[derive(Clone, Copy)]
+struct Clock {
+    end_s: f64,
+    steps: u64,
     stride: u64,
 }
 
-impl<'a, T: Single, M: Motion<T>> Visitor<T, Counted<&'a M>> for Watch<'a, M> {
-    type Output = Trajectory;
+/// What was seen until the end, or until the step that failed.
+struct Seen {
+    seen: Vec<(u64, Observation)>,
+    failed_step: Option<u64>,
+}
 
-    fn visit<A: Method<T, Counted<&'a M>>>(self, method: &A) -> Trajectory {
-        let Run { steps, end_s, .. } = *self.run;
-        let h = T::lit(end_s) / T::lit(steps as f64);
-        let start = self.model.inner.exact(T::lit(0.0));
+impl Clock {
+    fn of<A>(run: &Run<A>, stride: u64) -> Self {
+        Clock { end_s: run.end_s, steps: run.steps, stride }
+    }
+
+    fn drive<T: Single, M: Model<T>, A: Method<T, M>>(
+        self,
+        method: &A,
+        model: &M,
+        start: State<M::Config>,
+        observe: impl Fn(&State<M::Config>) -> Observation,
+    ) -> Seen {
+        let h = T::lit(self.end_s) / T::lit(self.steps as f64);
         let mut seen = Vec::new();
-        let result = drive::integrate(method, self.model, start, h, steps, |i, s| {
-            if i % self.stride == 0 || i == steps {
-                seen.push((i, self.model.inner.observe(s)));
+        let result = drive::integrate(method, model, start, h, self.steps, |i, s| {
+            if i % self.stride == 0 || i == self.steps {
+                seen.push((i, observe(s)));
             }
         });
-        let outcome = match result {
-            Ok(_) => Outcome::Finished,
-            Err(_) if self.run.method.is_implicit() => Outcome::NotConverged,
-            Err(_) => Outcome::Diverged,
+        Seen { seen, failed_step: result.err().map(|failure| failure.step) }
+    }
+}
+
+impl Seen {
+    fn trajectory(self, implicit: bool, evaluations: u64) -> Trajectory {
+        let outcome = match self.failed_step {
+            None => Outcome::Finished,
+            Some(_) if implicit => Outcome::NotConverged,
+            Some(_) => Outcome::Diverged,
         };
-        let failed_step = result.err().map(|failure| failure.step);
-        Trajectory { outcome, failed_step, seen, evaluations: self.model.evaluations() }
+        Trajectory { outcome, failed_step: self.failed_step, seen: self.seen, evaluations }
     }
 }

@@ -1,16 +1,15 @@
 //! What a scene is: a model with its exact motion in any arithmetic, and what is known about it beforehand.
 
 use faer::fx128;
-use integrator::methods::MethodId;
-use integrator::pose::{Exponential, World};
-use integrator::rigid_body::{Kinematics, RigidBody, WorldOmega};
-use integrator::{Model, Pose, Single, State, Twist};
+use integrator::methods::{MethodId, RigidStep};
+use integrator::rigid_body::{Kinematics, RigidBody};
+use integrator::{Model, Single, State};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
-use crate::run::{Run, Trajectory, run_model};
+use crate::run::{Run, Trajectory, run_body, run_model, run_step};
 use crate::scenes::parameters::Parameters;
 
 /// What a reader should know of a scene before looking at its numbers.
@@ -183,19 +182,6 @@ pub trait RigidMotion<T: Single>: RigidBody<T> {
     fn exact(&self, t: T) -> Kinematics<T, Self::Position>;
 }
 
-impl<T: Single, B: RigidMotion<T>> Motion<T> for WorldOmega<&B> {
-    fn exact(&self, t: T) -> State<Self::Config> {
-        let at = self.0.exact(t);
-        State {
-            q: Pose::new(at.position, at.attitude),
-            v: Twist { linear: at.velocity, angular: at.attitude.rotate(at.omega_body) },
-        }
-    }
-    fn observe(&self, s: &State<Pose<T, Exponential<World>, B::Position>>) -> Observation {
-        Observation::rigid(&s.q, &s.v.linear, s.v.angular)
-    }
-}
-
 /// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
 pub trait AnyScene: Send + Sync {
     /// The name on the command line and in tables; a preset is `scene/preset`.
@@ -212,6 +198,12 @@ pub trait AnyScene: Send + Sync {
 
     /// Runs one trajectory and observes it at every multiple of `stride` steps, and at the end.
     fn run(&self, run: &Run, stride: u64) -> Trajectory;
+
+    /// The same with a step that exists for rigid bodies only; `None` where the scene is not a rigid body.
+    fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
+        let _ = (run, stride);
+        None
+    }
 }
 
 /// Particles, or coordinates of a flat space: the scene is the model.
@@ -255,11 +247,12 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<fx128>> AnySce
         &mut self.scene
     }
     fn exact(&self, t: fx128) -> Observation {
-        let model = WorldOmega::<&B>::new(&self.scene);
-        model.observe(&Motion::<fx128>::exact(&model, t))
+        Observation::of_motion(&RigidMotion::<fx128>::exact(&self.scene, t))
     }
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
-        let model = WorldOmega::<&B>::new(&self.scene);
-        in_precision!(run.precision, T => run_model::<T, _>(&model, run, stride))
+        in_precision!(run.precision, T => run_body::<T, B>(&self.scene, run, stride))
+    }
+    fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
+        Some(in_precision!(run.precision, T => run_step::<T, B>(&self.scene, run, stride)))
     }
 }

@@ -130,7 +130,7 @@ impl Job<'_> {
     fn rows(&self, precisions: &[Precision]) -> Vec<Row> {
         let run = |precision| {
             let end_s = self.scene.scene().info().horizon_s;
-            let run = Run { method: self.method, precision, end_s, steps: self.steps };
+            let run = Run::new(self.method, precision, end_s, self.steps);
             self.scene.run(&run, (self.steps / CHECKPOINTS).max(1))
         };
         let reference = run(Precision::DoubleDouble);

@@ -156,7 +156,7 @@ impl Job<'_> {
         // Dyadic, so that every precision takes the same step.
         let h_s = (self.scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
         let steps = scales as u64 * STEPS_A_TIME_SCALE;
-        let run = Run { method: self.method, precision: self.precision, end_s: h_s * steps as f64, steps };
+        let run = Run::new(self.method, self.precision, h_s * steps as f64, steps);
         let trajectory = self.scene.run(&run, (steps / STRETCHES / OBSERVATIONS).max(1));
         let start = self.scene.exact(fx128::ZERO);
         let account = |t_s: f64, seen: &Observation| self.scene.scene().account(fx128::lit(t_s), seen);
