@@ -81,9 +81,12 @@ fn first_non_finite<T: Real, M: Model<T>, A: Method<T, M>>(
 ) -> Diverged {
     let mut s = before;
     let mut step = done;
-    while s.is_finite() {
+    // The step first: a start that is not finite fails in step 1, as it does in `integrate`.
+    loop {
         s = method.step(model, T::lit(step as f64) * h, h, s);
         step += 1;
+        if !s.is_finite() {
+            return Diverged { step };
+        }
     }
-    Diverged { step }
 }
