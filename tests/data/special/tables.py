@@ -134,5 +134,22 @@ def kummer():
     write("kummer", "a_re,a_im,b,z_re,z_im,value_re,value_im,derivative_re,derivative_im", rows)
 
 
-for table in (elementary, carlson, elliptic, jacobi, kepler, kummer):
+def arithmetic():
+    random.seed(2)
+    rows = []
+    for i in range(24):
+        x = random.choice([-1, 1]) * [random.uniform(0, 0.25), random.uniform(0, 7), random.uniform(7, 1e3), random.uniform(1e3, 1e6)][i % 4]
+        rows += [("sin", x, 0.0, M.sin(mpf(x))), ("cos", x, 0.0, M.cos(mpf(x)))]
+        x2 = [log_uniform(-16, -2), random.uniform(0, 0.0625), random.uniform(0.0625, 0.25), random.uniform(0.25, 1600)][i % 4]
+        rows += [("cos_sqrt", x2, 0.0, M.cos(M.sqrt(mpf(x2)))), ("sinc_sqrt", x2, 0.0, M.sin(M.sqrt(mpf(x2))) / M.sqrt(mpf(x2)))]
+        x = random.choice([-1, 1]) * [log_uniform(-9, 0), random.uniform(0, 5), random.uniform(5, 300)][i % 3]
+        rows.append(("exp", x, 0.0, M.exp(mpf(x))))
+        x = [log_uniform(-200, 200), 1 + random.choice([-1, 1]) * log_uniform(-12, -1), random.uniform(0, 10)][i % 3]
+        rows.append(("ln", x, 0.0, M.log(mpf(x))))
+        y, x = [random.choice([-1, 1]) * log_uniform(-9, 1) for _ in range(2)]
+        rows.append(("atan2", y, x, M.atan2(mpf(y), mpf(x))))
+    write("arithmetic", "function,x,y,value", rows)
+
+
+for table in (elementary, carlson, elliptic, jacobi, kepler, kummer, arithmetic):
     table()

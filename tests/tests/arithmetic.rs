@@ -1,0 +1,215 @@
+//! The arithmetic under every step: f32, f64 and double-double against tables of 36 digits, and against identities.
+//!
+//! Errors are absolute or relative as the function's condition has it, in eps = distance from 1 to the next number. Not
+//! seen here: speed, and whether other platforms give the same bits.
+
+use faer::fx128;
+use integrator::Single;
+use verification::table::{self, Entry};
+
+/// |value - truth| / (eps scale); infinite for NaN.
+fn error_in_eps<T: Single>(value: T, truth: fx128, scale: f64) -> f64 {
+    let error = (value.widen() - truth).0.abs() / (T::EPSILON * scale);
+    if error.is_nan() { f64::INFINITY } else { error }
+}
+
+/// The largest error of one function of the table.
+fn worst(function: &str, error: impl Fn(&Entry) -> f64) -> f64 {
+    let entries = table::load("arithmetic").into_iter().filter(|e| e.function == function);
+    let errors: Vec<f64> = entries.map(|e| error(&e)).collect();
+    assert!(errors.len() >= 20, "{function}: {} entries", errors.len());
+    let worst = errors.into_iter().fold(0.0, f64::max);
+    println!("{function}: {worst:.2} eps");
+    worst
+}
+
+/// Errors relative to the value, of what is computed from the first two numbers of an entry.
+fn worst_relative<T: Single>(function: &str, f: impl Fn(T, T) -> T) -> f64 {
+    worst(function, |e| {
+        error_in_eps(f(T::lit(e.arguments[0]), T::lit(e.arguments[1])), e.numbers[2], e.numbers[2].0.abs())
+    })
+}
+
+/// Absolute errors, for functions bounded by 1.
+fn worst_absolute<T: Single>(function: &str, f: impl Fn(T) -> T) -> f64 {
+    worst(function, |e| error_in_eps(f(T::lit(e.arguments[0])), e.numbers[2], 1.0))
+}
+
+// Fails if: libm::sin and libm::cos change places.
+#[test]
+fn elementary_functions_of_f64_are_good_to_an_ulp() {
+    // One ulp is at most one eps of the value.
+    assert!(worst_relative::<f64>("sin", |x, _| x.sin_cos().0) <= 1.0);
+    assert!(worst_relative::<f64>("cos", |x, _| x.sin_cos().1) <= 1.0);
+    assert!(worst_relative::<f64>("exp", |x, _| Single::exp(x)) <= 1.0);
+    assert!(worst_relative::<f64>("ln", |x, _| Single::ln(x)) <= 1.0);
+    assert!(worst_relative::<f64>("atan2", |y, x| Single::atan2(y, x)) <= 1.0);
+}
+
+// Fails if: the third part of HALF_PI is left out; the reduction takes one quarter turn too many; one doubling is left out;
+// the Newton step of atan2 is left out.
+#[test]
+fn elementary_functions_of_double_double_keep_their_digits() {
+    // 2e-31, the bound stated for |x| < 1e6, is 4.06 eps.
+    let stated = 2e-31 / fx128::EPSILON.0;
+    assert!(worst_absolute::<fx128>("sin", |x| integrator::Real::sin_cos(x).0) <= stated);
+    assert!(worst_absolute::<fx128>("cos", |x| integrator::Real::sin_cos(x).1) <= stated);
+    // faer's own: 7e-31 is 14.2 eps.
+    let of_faer = 7e-31 / fx128::EPSILON.0;
+    assert!(worst_relative::<fx128>("exp", |x, _| Single::exp(x)) <= of_faer);
+    // Near 1 the error of ln stays that of numbers of size 1: where its digits matter there, log1p has them.
+    let ln = |e: &Entry| {
+        error_in_eps(Single::ln(fx128::from_f64(e.arguments[0])), e.numbers[2], e.numbers[2].0.abs().max(1.0))
+    };
+    assert!(worst("ln", ln) <= of_faer);
+    // The sum of an angle and a correction 1e-16 of it: 2e-31 of sine and cosine times 1 at most, and the radius.
+    assert!(worst_relative::<fx128>("atan2", |y, x| Single::atan2(y, x)) <= 8.0);
+}
+
+// Fails if: f32 takes one Taylor term less.
+#[test]
+fn elementary_functions_of_f32_agree_with_f64_to_an_ulp() {
+    let mut worst = [0.0_f64; 7];
+    for i in 1..20_000 {
+        let x = (f64::from(i) * 0.002) as f32;
+        let wide = f64::from(x);
+        let (sine, cosine) = integrator::Real::sin_cos(x);
+        let (cosine_of_root, sinc_of_root) = <f32 as integrator::Real>::cos_sinc(x);
+        let root = wide.sqrt();
+        let pairs = [
+            (sine, wide.sin(), wide.sin().abs()),
+            (cosine, wide.cos(), wide.cos().abs()),
+            (Single::exp(-x), (-wide).exp(), (-wide).exp()),
+            (Single::ln(x), wide.ln(), wide.ln().abs()),
+            (Single::atan2(x, 3.0), wide.atan2(3.0), wide.atan2(3.0)),
+            // One ulp of the functions, and half an ulp of the root times |x sin x| <= |x| or |x d sinc/dx| <= 1.3.
+            (cosine_of_root, root.cos(), 1.0 + 0.5 * root),
+            (sinc_of_root, root.sin() / root, 2.0),
+        ];
+        for (w, (value, truth, scale)) in worst.iter_mut().zip(pairs) {
+            if scale > 0.0 {
+                *w = w.max((f64::from(value) - truth).abs() / (<f32 as Single>::EPSILON * scale));
+            }
+        }
+    }
+    println!("{worst:?}");
+    assert!(worst.iter().all(|w| *w <= 1.0), "{worst:?}");
+}
+
+/// The errors of (cos x, sin x / x) as functions of x^2 up to 40^2: the functions' own, and that of the root, half an ulp
+/// times |x sin x| <= x and |x d(sin x / x)/dx| <= 1.3.
+fn cos_sinc_is_accurate<T: Single>(own: f64) {
+    let cosine = worst("cos_sqrt", |e| {
+        let x = e.arguments[0].sqrt();
+        error_in_eps(T::cos_sinc(T::lit(e.arguments[0])).0, e.numbers[2], own + 0.5 * x)
+    });
+    let sinc = worst("sinc_sqrt", |e| error_in_eps(T::cos_sinc(T::lit(e.arguments[0])).1, e.numbers[2], own + 0.7));
+    assert!(cosine <= 1.0 && sinc <= 1.0, "{cosine} {sinc}");
+}
+
+// Fails if: a Taylor sum of f64 or double-double loses its highest term; TAYLOR_BOUND is 2.
+#[test]
+fn cosine_and_sinc_of_a_square_are_accurate() {
+    cos_sinc_is_accurate::<f64>(1.0);
+    cos_sinc_is_accurate::<fx128>(2e-31 / fx128::EPSILON.0);
+}
+
+/// The two formulas on the two sides of the switch, one ulp apart in x^2, differ by rounding only.
+fn continuous_at<T: Single>(below: f64, above: T, bound: f64) {
+    let (c0, s0) = T::cos_sinc(T::lit(below));
+    let (c1, s1) = T::cos_sinc(above);
+    let jumps = [c1 - c0, s1 - s0].map(|d| d.to_f64().abs() / T::EPSILON);
+    println!("{jumps:?} eps");
+    assert!(T::lit(below) < above && jumps.iter().all(|j| *j <= bound), "{jumps:?}");
+}
+
+// Fails if: the Taylor sums of f64 have a term less; TAYLOR_BOUND is 2 in f64.
+#[test]
+fn cosine_and_sinc_are_continuous_where_the_formula_changes() {
+    // Between two neighbours in x^2 the functions change by less than eps / 8; one ulp each side is the rest.
+    continuous_at::<f32>(0.25, 0.25_f32.next_up(), 2.0);
+    continuous_at::<f64>(0.25, 0.25_f64.next_up(), 2.0);
+    let above = fx128::from_f64(0.0625) + fx128::from_f64(2.0_f64.powi(-107));
+    continuous_at::<fx128>(0.0625, above, 4.0);
+}
+
+/// Largest violation, in eps, of identities that tie the functions to each other.
+fn identities<T: Single>(x: T) -> [f64; 5] {
+    let (one, two) = (T::lit(1.0), T::lit(2.0));
+    let (sine, cosine) = x.sin_cos();
+    let (twice, _) = (x + x).sin_cos();
+    let small = x / T::lit(16.0);
+    let in_eps = |difference: T| difference.to_f64().abs() / T::EPSILON;
+    let (s, c) = small.sin_cos();
+    [
+        in_eps(sine * sine + cosine * cosine - one),
+        in_eps(two * sine * cosine - twice),
+        in_eps(small.exp() * (-small).exp() - one),
+        in_eps(small.exp().ln() - small),
+        in_eps(s.atan2(c) - small),
+    ]
+}
+
+// Fails if: quarters 1 and 3 of the reduction change places (double-double).
+#[test]
+fn functions_keep_their_identities_in_every_arithmetic() {
+    fn worst<T: Single>(bound: f64) {
+        let mut worst = [0.0_f64; 5];
+        for i in -400..=400 {
+            let found = identities(T::lit(f64::from(i) / 16.0));
+            worst = std::array::from_fn(|k| worst[k].max(found[k]));
+        }
+        println!("{worst:?}");
+        assert!(worst.iter().all(|w| *w <= bound), "{worst:?}");
+    }
+    // A handful of roundings of numbers below e^(25/16) = 4.8.
+    worst::<f32>(4.0);
+    worst::<f64>(4.0);
+    // 4.06 eps of sine and cosine each enter twice; 14.2 eps of exp and ln once.
+    worst::<fx128>(2.0 * 14.2);
+}
+
+fn non_finite_stays<T: Single>() {
+    let nan = T::lit(f64::NAN);
+    let infinite = T::lit(f64::INFINITY);
+    for x in [nan, infinite, -infinite] {
+        let (sine, cosine) = x.sin_cos();
+        let (c, s) = T::cos_sinc(x);
+        assert!(!x.is_finite() && !sine.is_finite() && !cosine.is_finite(), "{x:?}: {sine:?} {cosine:?}");
+        assert!(!c.is_finite() && !s.is_finite() || x == -infinite, "{x:?}: {c:?} {s:?}");
+        assert!(!x.abs().is_finite() && !x.ln().is_finite() && !x.round().is_finite(), "{x:?}");
+        assert!(!x.widen().0.is_finite() && !T::narrow(x.widen()).is_finite(), "{x:?}");
+    }
+    assert!(!nan.exp().is_finite() && !infinite.exp().is_finite() && !nan.sqrt().is_finite());
+    assert!(!infinite.sqrt().is_finite() && !T::lit(-1.0).sqrt().is_finite());
+    assert!(!T::lit(-1.0).ln().is_finite() && !T::lit(0.0).ln().is_finite());
+    assert!(!nan.atan2(T::lit(1.0)).is_finite() && !T::lit(1.0).atan2(nan).is_finite());
+    assert!(T::lit(1.0).is_finite() && T::lit(-1e30).is_finite());
+}
+
+// Fails if: sin_cos of double-double does not look for infinity first (it would take the remainder of NaN); ln of double-double of
+// an infinite number is a finite one.
+#[test]
+fn non_finite_numbers_stay_so_and_nothing_panics() {
+    non_finite_stays::<f32>();
+    non_finite_stays::<f64>();
+    non_finite_stays::<fx128>();
+}
+
+// Fails if: narrow of f32 or f64 takes the low part alone; round of double-double ignores the low part.
+#[test]
+fn conversions_are_exact_or_nearest() {
+    let tail = fx128::from_f64(2.0_f64.powi(-70));
+    let x = fx128::from_f64(1.0) + tail;
+    assert_eq!((x.0, x.1), (1.0, 2.0_f64.powi(-70)));
+    assert_eq!(fx128::narrow(x), x);
+    assert_eq!(<f64 as Single>::narrow(x), 1.0);
+    assert_eq!(0.1_f32.widen().to_f64(), f64::from(0.1_f32));
+    assert_eq!(<f32 as Single>::narrow(0.7_f32.widen()), 0.7_f32);
+    assert_eq!(<f64 as Single>::narrow(0.7_f64.widen()), 0.7_f64);
+    let half_and_less = fx128::from_f64(2.5) - tail;
+    assert_eq!(Single::round(half_and_less), fx128::from_f64(2.0));
+    assert_eq!(Single::round(-half_and_less), fx128::from_f64(-2.0));
+    assert_eq!(Single::round(fx128::from_f64(2.5) + tail), fx128::from_f64(3.0));
+    assert_eq!(Single::round(fx128::from_f64(7.0) + tail), fx128::from_f64(7.0));
+}
