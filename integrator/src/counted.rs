@@ -46,6 +46,9 @@ impl<T: Real, M: Model<T>> Model<T> for Counted<M> {
     fn velocity(&self, q: M::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
         self.inner.velocity(q, v)
     }
+    fn contact(&self, before: &State<M::Config>, after: State<M::Config>) -> State<M::Config> {
+        self.inner.contact(before, after)
+    }
 }
 
 impl<T: Real, B: RigidBody<T>> RigidBody<T> for Counted<B> {

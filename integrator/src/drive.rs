@@ -1,4 +1,5 @@
 //! n fixed steps from t = 0, at the times t = i h with i an integer: never a sum of steps.
+//! After every step the model's [`Model::contact`] may change the state at once: a bounce.
 
 use crate::model::{Method, Model, State};
 use crate::real::Real;
@@ -31,7 +32,7 @@ pub fn advance<T: Real, M: Model<T>, A: Method<T, M>>(
         let block = SETTLE_EVERY.min(steps - done);
         let before = s;
         for i in done..done + block {
-            s = method.step(model, T::lit(i as f64) * h, h, s);
+            s = model.contact(&s, method.step(model, T::lit(i as f64) * h, h, s));
         }
         if !s.is_finite() {
             return Err(first_non_finite(method, model, before, h, done));
@@ -59,7 +60,7 @@ pub fn integrate<T: Real, M: Model<T>, A: Method<T, M>>(
     let mut s = start;
     observe(0, &s);
     for i in 0..steps {
-        s = method.step(model, T::lit(i as f64) * h, h, s);
+        s = model.contact(&s, method.step(model, T::lit(i as f64) * h, h, s));
         if !s.is_finite() {
             return Err(Diverged { step: i + 1 });
         }
@@ -83,7 +84,7 @@ fn first_non_finite<T: Real, M: Model<T>, A: Method<T, M>>(
     let mut step = done;
     // The step first: a start that is not finite fails in step 1, as it does in `integrate`.
     loop {
-        s = method.step(model, T::lit(step as f64) * h, h, s);
+        s = model.contact(&s, method.step(model, T::lit(step as f64) * h, h, s));
         step += 1;
         if !s.is_finite() {
             return Diverged { step };

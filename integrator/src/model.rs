@@ -50,6 +50,13 @@ pub trait Model<T: Real> {
     fn velocity(&self, _q: Self::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
         v
     }
+
+    /// An instantaneous change at the end of a step, which no rate can tell: a bounce. The driver applies it to every
+    /// step, from the state `before` it to the state `after` it; the methods do not know of it.
+    #[inline(always)]
+    fn contact(&self, _before: &State<Self::Config>, after: State<Self::Config>) -> State<Self::Config> {
+        after
+    }
 }
 
 /// A one-step rule: the state at t + h from the state at t.
@@ -72,5 +79,9 @@ impl<T: Real, M: Model<T>> Model<T> for &M {
     #[inline(always)]
     fn velocity(&self, q: Self::Config, v: Tangent<Self, T>) -> Tangent<Self, T> {
         (**self).velocity(q, v)
+    }
+    #[inline(always)]
+    fn contact(&self, before: &State<Self::Config>, after: State<Self::Config>) -> State<Self::Config> {
+        (**self).contact(before, after)
     }
 }

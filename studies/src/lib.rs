@@ -18,6 +18,7 @@ pub mod observation;
 pub mod order;
 pub mod produce;
 mod provenance;
+pub mod residual;
 pub mod scene;
 pub mod scenes;
 pub mod special;

@@ -1,5 +1,6 @@
 //! How wrong is it? The error against the step, and the order observed.
 
+mod envelope;
 mod figures;
 mod orders;
 
@@ -63,7 +64,9 @@ pub struct Row {
     pub evaluations: u64,
     /// The order that theory predicts; empty where it predicts no error but rounding.
     pub theory_order: Option<f64>,
-    /// lim error_end / h^order that theory predicts, where it does.
+    /// Whether the error is only bounded by theory_constant h^theory_order, and jumps below it from step to step.
+    pub theory_is_envelope: bool,
+    /// lim error_end / h^order (or its bound) that theory predicts, where it does.
     pub theory_constant: Option<f64>,
 }
 
@@ -183,8 +186,9 @@ impl Job<'_> {
                     evaluations: run.evaluations,
                     theory_order: match theory.order {
                         ExpectedOrder::Exact => None,
-                        ExpectedOrder::Of(order) => Some(order),
+                        ExpectedOrder::Of(order) | ExpectedOrder::Envelope(order) => Some(order),
                     },
+                    theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
                     theory_constant: theory.constant,
                 }
             })

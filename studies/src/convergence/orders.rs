@@ -3,7 +3,7 @@
 use reports::{Claim, Table, Verdict as Truth};
 use serde::{Deserialize, Serialize};
 
-use super::{HALVINGS, Row};
+use super::{HALVINGS, Row, envelope};
 use crate::error::Error;
 use crate::observation::Quantity;
 use crate::order::{self, Expected, Limits, Sample, Verdict};
@@ -45,7 +45,9 @@ pub struct OrderRow {
     pub measure: Measure,
     /// The order that theory predicts; empty where it predicts no error but rounding.
     pub theory_order: Option<f64>,
-    /// The order observed.
+    /// Whether theory only bounds the error by theory_constant h^theory_order.
+    pub theory_is_envelope: bool,
+    /// The order observed; of the envelope, from the coarser to the finer half of a sweep.
     pub order: Option<f64>,
     /// Low end of its interval.
     pub order_low: Option<f64>,
@@ -117,6 +119,9 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
             Sample { h_s: row.h_s, error, floor }
         })
         .collect();
+    if first.theory_is_envelope {
+        return envelope::order_of(first, measure, &samples);
+    }
     let tolerance = tolerance(first.precision, sweep.len());
     let expected = first.theory_order.map_or(Expected::Exact, |order| Expected::Order { order, tolerance });
     // The scale may vanish where a quantity passes through zero; one unit of it stands in.
@@ -145,6 +150,7 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         quantity: first.quantity,
         measure,
         theory_order: first.theory_order,
+        theory_is_envelope: false,
         order: seen.slope,
         order_low: seen.interval.map(|i| i[0]),
         order_high: seen.interval.map(|i| i[1]),
@@ -201,6 +207,7 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     for group in double.chunk_by(|a, b| a.scene == b.scene && a.method == b.method) {
         claims.push(order_claim(group));
         claims.extend(group.iter().filter_map(|o| constant_claim(o)));
+        claims.extend(group.iter().filter_map(|o| envelope::claim(o)));
     }
     claims
 }

@@ -1,24 +1,44 @@
 //! The one list of scenes. A new scene is one file beside this one, and one line in [`catalogue`].
 
+pub mod bouncing_ball;
 pub mod box_tumbling;
+pub mod charged_particle;
 pub mod constant_force;
+pub mod damped_oscillator;
+pub mod forced_oscillator;
 pub mod heavy_top;
+pub mod kepler;
+mod linear;
+pub mod linear_drag;
 pub mod manufactured;
+mod oscillation;
 pub mod oscillator;
 pub mod parameters;
+pub mod pendulum;
 pub mod principal_axis_torque;
+pub mod quadratic_drag;
 mod rigid;
 pub mod sphere_torque;
+pub mod spring_chain;
 pub mod symmetric_top;
 pub mod torque_free_spin;
 
+pub use bouncing_ball::BouncingBall;
 pub use box_tumbling::BoxTumbling;
+pub use charged_particle::ChargedParticle;
 pub use constant_force::ConstantForce;
+pub use damped_oscillator::DampedOscillator;
+pub use forced_oscillator::ForcedOscillator;
 pub use heavy_top::HeavyTop;
+pub use kepler::Kepler;
+pub use linear_drag::LinearDrag;
 pub use manufactured::Manufactured;
 pub use oscillator::Oscillator;
+pub use pendulum::Pendulum;
 pub use principal_axis_torque::PrincipalAxisTorque;
+pub use quadratic_drag::QuadraticDrag;
 pub use sphere_torque::SphereTorque;
+pub use spring_chain::SpringChain;
 pub use symmetric_top::SymmetricTop;
 pub use torque_free_spin::TorqueFreeSpin;
 
@@ -39,7 +59,28 @@ macro_rules! list {
 
 list! {
     "constant-force" => Particles(ConstantForce::default());
+    "linear-drag" => Particles(LinearDrag::default());
+    "quadratic-drag/fall" => Particles(QuadraticDrag::default());
+    "quadratic-drag/rise" => Particles(QuadraticDrag::rise());
     "oscillator" => Particles(Oscillator::default());
+    "damped-oscillator" => Particles(DampedOscillator::default());
+    "damped-oscillator/critical" => Particles(DampedOscillator::critical());
+    "damped-oscillator/over-damped" => Particles(DampedOscillator::over_damped());
+    "forced-oscillator" => Particles(ForcedOscillator::default());
+    "forced-oscillator/resonance" => Particles(ForcedOscillator::resonance());
+    "forced-oscillator/near-resonance" => Particles(ForcedOscillator::near_resonance());
+    "pendulum" => Particles(Pendulum::default());
+    "pendulum/rotation" => Particles(Pendulum::rotation());
+    "pendulum/near-separatrix" => Particles(Pendulum::near_separatrix());
+    "kepler" => Particles(Kepler::default());
+    "kepler/circular" => Particles(Kepler::circular());
+    "kepler/pericentre" => Particles(Kepler::pericentre());
+    "kepler/eccentric" => Particles(Kepler::eccentric());
+    "charged-particle" => Particles(ChargedParticle::default());
+    "charged-particle/magnetic" => Particles(ChargedParticle::magnetic());
+    "spring-chain" => Particles(SpringChain::default());
+    "bouncing-ball" => Particles(BouncingBall::default());
+    "bouncing-ball/inelastic" => Particles(BouncingBall::inelastic());
     "principal-axis-torque" => Rigid(PrincipalAxisTorque::default());
     "sphere-torque" => Rigid(SphereTorque::default());
     "symmetric-top/disc" => Rigid(SymmetricTop::disc());

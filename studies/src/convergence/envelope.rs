@@ -1,0 +1,77 @@
+//! Errors that theory only bounds: an event anywhere in a step makes error / h^p jump between bounds from step to step, so
+//! that no local order means anything. What can be tested is the envelope.
+
+use reports::{Claim, Verdict as Truth};
+
+use super::Row;
+use super::orders::{Measure, OrderRow};
+use crate::order::{Sample, Verdict};
+
+/// The largest error / h^p of the coarser and of the finer half of a sweep may differ by the factor 8: over the half of
+/// 12 halvings that is an order within p +- 1/2.
+const HALVES_DIFFER: f64 = 8.0;
+/// The bound holds to leading order: what the next terms of the error add to it at the finer half of a sweep, as a part.
+const NEXT_TERMS: f64 = 0.05;
+/// A bound that no error comes within this part of is not the bound.
+const REACHED: f64 = 0.1;
+
+/// The envelope of one sweep. `constant` is the largest error / h^p of its finer half, `order` the p +- of the two halves.
+pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> OrderRow {
+    let p = first.theory_order.unwrap_or(0.0);
+    let ratios: Vec<f64> = samples.iter().map(|s| s.error.map_or(f64::NAN, |e| e / s.h_s.powf(p))).collect();
+    let (coarse, fine) = ratios.split_at(ratios.len() / 2);
+    let largest =
+        |part: &[f64]| part.iter().copied().fold(0.0, |a: f64, b| if b.is_nan() { f64::NAN } else { a.max(b) });
+    let (coarse_top, fine_top) = (largest(coarse), largest(fine));
+    let middle = samples.len() / 2;
+    let span = samples.first().zip(samples.get(middle)).map_or(1.0, |(a, b)| (a.h_s / b.h_s).ln());
+    // Rounding fills the fine end of a sweep in f32 and f64; the claims are made in double-double.
+    let halves = coarse_top / fine_top;
+    let holds = halves <= HALVES_DIFFER && halves >= 1.0 / HALVES_DIFFER;
+    OrderRow {
+        scene: first.scene.clone(),
+        method: first.method.clone(),
+        precision: first.precision,
+        quantity: first.quantity,
+        measure,
+        theory_order: first.theory_order,
+        theory_is_envelope: true,
+        order: Some(p + halves.ln() / span).filter(|x| x.is_finite()),
+        order_low: None,
+        order_high: None,
+        window_from_h_s: samples.get(middle).map(|s| s.h_s),
+        window_to_h_s: samples.last().map(|s| s.h_s),
+        window_points: Some(fine.len()),
+        constant: Some(fine_top).filter(|x| x.is_finite()),
+        constant_change: None,
+        theory_constant: if measure == Measure::End { first.theory_constant } else { None },
+        floor: None,
+        unit: first.unit.clone(),
+        verdict: if holds { Verdict::AsExpected } else { Verdict::NotAsymptotic },
+        tolerance: 0.5,
+        note: format!("largest error / h^{p}: {coarse_top:.3e} in the coarser half, {fine_top:.3e} in the finer half"),
+    }
+}
+
+/// The errors of the finer half stay below the bound of theory, and one of them comes near it.
+pub(super) fn claim(o: &OrderRow) -> Option<Claim> {
+    if !o.theory_is_envelope {
+        return None;
+    }
+    let (bound, largest) = (o.theory_constant?, o.constant?);
+    let p = o.theory_order?;
+    Some(Claim {
+        id: format!("convergence.{}.{}.{}.envelope", o.scene, o.method, o.quantity.id()),
+        study: "convergence".to_owned(),
+        statement: format!(
+            "the {} error of {} on {} stays in the envelope of theory",
+            o.quantity.id(),
+            o.method,
+            o.scene
+        ),
+        theory: format!("error / h^{p} <= {bound:.6e} {}/s^{p}", o.unit),
+        measured: format!("largest of the finer half {largest:.6e}"),
+        bound: format!("between {REACHED} and 1 + {NEXT_TERMS} of it"),
+        verdict: Truth::from_comparison(largest <= bound * (1.0 + NEXT_TERMS) && largest >= bound * REACHED),
+    })
+}
