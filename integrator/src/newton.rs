@@ -44,9 +44,11 @@ impl<V> Pair<V> {
 }
 
 /// A zero of `residual` near `guess`, to rounding; `None` where the iteration does not converge.
+///
+/// The residual comes as a pointer: the iteration is compiled once for each kind of vector, not for each model.
 pub(crate) fn solve<T: Single, V: Vector<T>>(
     guess: Pair<V>,
-    residual: impl Fn(&Pair<V>) -> Pair<V>,
+    residual: &dyn Fn(&Pair<V>) -> Pair<V>,
 ) -> Option<Pair<V>> {
     let mut z = guess;
     let mut jacobian: Option<LU<f64, Dyn, Dyn>> = None;
@@ -55,7 +57,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         let r = residual(&z);
         let lu = match jacobian.take() {
             Some(lu) => lu,
-            None => decompose(&z, &r, &residual)?,
+            None => decompose(&z, &r, residual)?,
         };
         let right = DVector::from_fn(2 * V::DIM, |i, _| r.get::<T>(i).to_f64());
         let correction = lu.solve(&right)?;
@@ -81,7 +83,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
 fn decompose<T: Single, V: Vector<T>>(
     z: &Pair<V>,
     r: &Pair<V>,
-    residual: &impl Fn(&Pair<V>) -> Pair<V>,
+    residual: &dyn Fn(&Pair<V>) -> Pair<V>,
 ) -> Option<LU<f64, Dyn, Dyn>> {
     let n = 2 * V::DIM;
     let scale = z.norm::<T>();

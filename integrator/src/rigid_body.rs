@@ -296,7 +296,7 @@ impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Model<T> for WithoutGyr
     }
 }
 
-impl<T: Real, B: RigidBody<T>> RigidBody<T> for &B {
+impl<T: Real, B: RigidBody<T> + ?Sized> RigidBody<T> for &B {
     type Position = B::Position;
 
     #[inline(always)]

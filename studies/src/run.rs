@@ -8,7 +8,7 @@ use integrator::rigid_body::{
     AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WithoutGyroscopicTerm, WorldMomentum,
     WorldOmega,
 };
-use integrator::{Method, Model, Single, State, drive};
+use integrator::{Method, Model, Single, State, Vector, drive};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -181,13 +181,36 @@ impl<'a, T: Single, M: Motion<T>> Visitor<T, Counted<&'a M>> for Flat<'a, M> {
 }
 
 /// Runs a rigid body with a method, a stored quantity and an attitude update chosen at run time.
+///
+/// What every study runs, the world omega with the exponential map, is compiled for each body. The other combinations
+/// take their body behind a pointer, one virtual call an evaluation: they are compared and not timed, and compiled for each
+/// body they would make the build several times as long.
 pub(crate) fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride: u64) -> Trajectory {
+    let start = body.exact(T::lit(0.0));
+    if (run.storage, run.update) != (Storage::WorldOmega, AttitudeUpdate::Exponential) {
+        return run_any(body as AnyBody<'_, T, B::Position>, start, run, stride);
+    }
+    let counted = Counted::new(body);
+    let model = WorldOmega::<_, Exponential<World>>::new(&counted);
+    let seen = run.method.visit(Turning { model: &model, start, clock: Clock::of(run, stride) });
+    seen.trajectory(run.method.is_implicit(), counted.evaluations())
+}
+
+/// A body of which only the kind of its position is known.
+type AnyBody<'a, T, P> = &'a dyn RigidBody<T, Position = P>;
+
+fn run_any<T: Single, P: Vector<T>>(
+    body: AnyBody<'_, T, P>,
+    start: Kinematics<T, P>,
+    run: &Run,
+    stride: u64,
+) -> Trajectory {
     let counted = Counted::new(body);
     let clock = Clock::of(run, stride);
     macro_rules! with {
         ($model:ident, $update:ident<$frame:ident>) => {{
             let model = $model::<_, $update<$frame>>::new(&counted);
-            run.method.visit(Turning { model: &model, start: body.exact(T::lit(0.0)), clock })
+            run.method.visit(Turning { model: &model, start, clock })
         }};
     }
     use AttitudeUpdate as U;
@@ -206,8 +229,17 @@ pub(crate) fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride
 
 /// Runs a rigid body with a step that exists for rigid bodies only.
 pub(crate) fn run_step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidStep>, stride: u64) -> Trajectory {
+    step_any(body as AnyBody<'_, T, B::Position>, body.exact(T::lit(0.0)), run, stride)
+}
+
+fn step_any<T: Single, P: Vector<T>>(
+    body: AnyBody<'_, T, P>,
+    start: Kinematics<T, P>,
+    run: &Run<RigidStep>,
+    stride: u64,
+) -> Trajectory {
     let counted = Counted::new(body);
-    let turn = Turn { start: body.exact(T::lit(0.0)), clock: Clock::of(run, stride) };
+    let turn = Turn { start, clock: Clock::of(run, stride) };
     let seen = run.method.visit::<T, _, _>(run.update, &counted, turn);
     seen.trajectory(false, counted.evaluations())
 }

@@ -16,7 +16,7 @@ impl<T: Single, M: Model<T>> Method<T, M> for ImplicitMidpoint {
         let half = h * T::lit(0.5);
         let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), half) };
         // The unknown is the middle of the step: w, and vm.
-        let solution = solve::<T, _>(guess, |z| {
+        let solution = solve::<T, _>(guess, &|z| {
             let middle = State { q: s.q.retract(z.w, half), v: z.v };
             let w = m.velocity(middle.q, middle.v);
             Pair { w: z.w - w, v: z.v - s.v.plus(m.rate(t + half, &middle), half) }
