@@ -53,6 +53,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
     let mut z = guess;
     let mut jacobian: Option<LU<f64, Dyn, Dyn>> = None;
     let mut last = f64::INFINITY;
+    let mut largest = z.norm::<T>();
     for _ in 0..MOST_ITERATIONS {
         let r = residual(&z);
         let lu = match jacobian.take() {
@@ -67,8 +68,14 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         }
         z = Pair::from_fn(|i| z.get::<T>(i) - T::lit(correction[i]));
         // The last correction was applied: what remains is its square, or `SLOW` of it.
-        let rounding = T::EPSILON * z.norm::<T>();
-        if size <= 0.25 * rounding || (size <= 16.0 * rounding && size >= 0.5 * last) || size == 0.0 {
+        let norm = z.norm::<T>().max(tiny::<T>());
+        // The residual rounds as the terms it is the difference of, of which the guess and the iterates are made: where they
+        // cancel (a velocity passing through zero), corrections stop shrinking above the rounding of z itself.
+        largest = largest.max(norm);
+        if size <= 0.25 * T::EPSILON * norm
+            || (size <= 16.0 * T::EPSILON * largest && size >= 0.5 * last)
+            || size == 0.0
+        {
             return Some(z);
         }
         if size <= SLOW * last {
@@ -86,14 +93,15 @@ fn decompose<T: Single, V: Vector<T>>(
     residual: &dyn Fn(&Pair<V>) -> Pair<V>,
 ) -> Option<LU<f64, Dyn, Dyn>> {
     let n = 2 * V::DIM;
-    let scale = z.norm::<T>();
+    // Where the residual is larger than the unknowns, a difference scaled to them would be lost in it.
+    let scale = z.norm::<T>().max(r.norm::<T>()).max(tiny::<T>());
     if !scale.is_finite() {
         return None;
     }
     let root = T::EPSILON.sqrt();
     let mut jacobian = DMatrix::zeros(n, n);
     for j in 0..n {
-        let delta = T::lit(root * (z.get::<T>(j).to_f64().abs() + scale / n as f64 + f64::MIN_POSITIVE / root));
+        let delta = T::lit(root * (z.get::<T>(j).to_f64().abs() + scale / n as f64));
         let moved = Pair::from_fn(|i| if i == j { z.get::<T>(i) + delta } else { z.get(i) });
         let change = residual(&moved);
         for i in 0..n {
@@ -101,6 +109,11 @@ fn decompose<T: Single, V: Vector<T>>(
         }
     }
     jacobian.iter().all(|x: &f64| x.is_finite()).then(|| jacobian.lu())
+}
+
+/// What is smaller counts as zero: far enough above where `T`, or a square in `f64`, underflows.
+fn tiny<T: Single>() -> f64 {
+    if T::lit(1e-150).to_f64() > 0.0 { 1e-150 } else { 1e-30 }
 }
 
 /// A vector that says 'no solution' in the one way the driver understands.
