@@ -46,6 +46,7 @@ fn worst_step<T: Single, A: Method<T, Oscillator>>(method: &A, f: fn(&S<T>) -> f
     worst
 }
 
+// Fails if: the scene's default mass is 1.
 #[test]
 fn the_scene_is_the_one_the_laws_are_written_for() {
     let scene = Oscillator::default();

@@ -100,7 +100,7 @@ fn irreversible_methods_miss_the_start_by_what_theory_says() {
     }
 }
 
-// Fails if: the pendulum's explicit Euler is replaced by Verlet.
+// Fails if: stage 3 of RK4 takes its velocity from a1 instead of a2.
 #[test]
 fn on_the_pendulum_irreversible_methods_come_back_with_an_error_of_their_order() {
     // RK4 misses by h^5: its h^4 error is that of a reversible flow, |R|^2 - 1 = -z^6 / 72 a step.

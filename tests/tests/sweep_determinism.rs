@@ -42,7 +42,7 @@ fn convergence_rows_are_the_same_bytes_on_any_number_of_threads() {
     is_deterministic::<Convergence>(2 * 2 * 3 * 3 * 3);
 }
 
-// Fails if: in_parallel returns its results in the order of their cost.
+// Fails if: in_parallel returns its results in the order in which they end up.
 #[test]
 fn drift_rows_are_the_same_bytes_on_any_number_of_threads() {
     // Energy of the oscillator; energy, norm and direction of the momentum, and the quaternion of the body; 128 stretches, f32 and f64.
