@@ -9,7 +9,7 @@ use crate::space::Vector;
 
 /// Newton steps before the iteration is given up.
 const MOST_ITERATIONS: usize = 50;
-/// The Jacobian is renewed when an iteration shrinks the correction by less than this factor.
+/// The Jacobian is computed anew when an iteration shrinks the correction by less than this factor.
 const SLOW: f64 = 0.1;
 
 /// The pair (velocity of the configuration, stored velocity) at the end or in the middle of a step.
@@ -51,22 +51,29 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
     residual: &dyn Fn(&Pair<V>) -> Pair<V>,
 ) -> Option<Pair<V>> {
     let mut z = guess;
+    // z - g(z) with g of the size of h: the identity is the Jacobian of a small step, and costs no evaluation.
     let mut jacobian: Option<LU<f64, Dyn, Dyn>> = None;
+    let mut renew = false;
     let mut last = f64::INFINITY;
     let mut largest = z.norm::<T>();
     for _ in 0..MOST_ITERATIONS {
         let r = residual(&z);
-        let lu = match jacobian.take() {
-            Some(lu) => lu,
-            None => decompose(&z, &r, residual)?,
+        if renew {
+            jacobian = Some(decompose(&z, &r, residual)?);
+        }
+        let correction = match &jacobian {
+            None => r,
+            Some(lu) => {
+                let right = DVector::from_fn(2 * V::DIM, |i, _| r.get::<T>(i).to_f64());
+                let solution = lu.solve(&right)?;
+                Pair::from_fn(|i| T::lit(solution[i]))
+            }
         };
-        let right = DVector::from_fn(2 * V::DIM, |i, _| r.get::<T>(i).to_f64());
-        let correction = lu.solve(&right)?;
-        let size = correction.norm();
+        let size = correction.norm::<T>();
         if !size.is_finite() {
             return None;
         }
-        z = Pair::from_fn(|i| z.get::<T>(i) - T::lit(correction[i]));
+        z = Pair { w: z.w - correction.w, v: z.v - correction.v };
         // The last correction was applied: what remains is its square, or `SLOW` of it.
         let norm = z.norm::<T>().max(tiny::<T>());
         // The residual rounds as the terms it is the difference of, of which the guess and the iterates are made: where they
@@ -78,9 +85,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         {
             return Some(z);
         }
-        if size <= SLOW * last {
-            jacobian = Some(lu);
-        }
+        renew = size > SLOW * last;
         last = size;
     }
     None
