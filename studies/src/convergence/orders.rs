@@ -227,8 +227,14 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
         theory: promised.join(", "),
         measured: measured.join("; "),
         bound: format!("within {} of theory in double-double", first.tolerance),
-        verdict: Truth::from_comparison(group.iter().all(|o| o.verdict.passes())),
+        verdict: Truth::from_comparison(group.iter().filter(|o| is_judged(o)).all(|o| o.verdict.passes())),
     }
+}
+
+/// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by
+/// all of its size, however small the step.
+fn is_judged(o: &OrderRow) -> bool {
+    !(o.theory_is_envelope && o.measure == Measure::Max)
 }
 
 fn constant_claim(o: &OrderRow) -> Option<Claim> {

@@ -188,7 +188,7 @@ impl Scene for BouncingBall {
             source: "parabolas and a geometric series (E. Falcon et al., Eur. Phys. J. B 3 (1998) 45)",
             horizon_s: 2.25,
             time_scale_s: self.impact_speed().to_f64() / self.gravity,
-            coarsest_steps: 64,
+            coarsest_steps: 16,
         }
     }
 

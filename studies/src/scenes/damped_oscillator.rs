@@ -78,7 +78,7 @@ impl Scene for DampedOscillator {
             source: "elementary",
             horizon_s: 2.75,
             time_scale_s: (self.mass / self.stiffness).sqrt(),
-            coarsest_steps: 16,
+            coarsest_steps: 8,
         }
     }
 

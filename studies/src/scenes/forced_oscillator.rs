@@ -84,7 +84,7 @@ impl Scene for ForcedOscillator {
             source: "elementary; the response as a divided difference of exponentials",
             horizon_s: 2.75,
             time_scale_s: (self.mass / self.stiffness).sqrt().min(1.0 / self.drive.max(f64::MIN_POSITIVE)),
-            coarsest_steps: 16,
+            coarsest_steps: 8,
         }
     }
 

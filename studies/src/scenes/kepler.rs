@@ -84,7 +84,7 @@ impl Scene for Kepler {
             horizon_s: 2.25,
             // The angle of the pericentre passage: (1 - e)^(3/2) of the mean motion's.
             time_scale_s: (a / self.mu).sqrt() * a * (1.0 - e).powf(1.5),
-            coarsest_steps: if e > 0.8 { 256 } else { 32 },
+            coarsest_steps: if e > 0.8 { 32 } else { 16 },
         }
     }
 

@@ -13,7 +13,7 @@ use nalgebra::Vector1;
 
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
-use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, StabilityLimit, Theory};
+use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, StabilityLimit, Theory, rounded};
 use crate::scenes::parameters::scene_parameters;
 
 scene_parameters! {
@@ -75,10 +75,10 @@ impl<T: Real> Model<T> for Oscillator {
 
 impl<T: Single> Motion<T> for Oscillator {
     fn exact(&self, t: T) -> State<Vector1<T>> {
-        let w = (T::lit(self.stiffness) / T::lit(self.mass)).sqrt();
-        let (sine, cosine) = (w * t).sin_cos();
-        let (x0, v0) = (T::lit(self.x0), T::lit(self.v0));
-        State { q: Vector1::new(x0 * cosine + v0 / w * sine), v: Vector1::new(v0 * cosine - x0 * w * sine) }
+        let w = (fx128::lit(self.stiffness) / fx128::lit(self.mass)).sqrt();
+        let (sine, cosine) = (w * t.widen()).sin_cos();
+        let (x0, v0) = (fx128::lit(self.x0), fx128::lit(self.v0));
+        rounded(Vector1::new(x0 * cosine + v0 / w * sine), Vector1::new(v0 * cosine - x0 * w * sine))
     }
     fn observe(&self, s: &State<Vector1<T>>) -> Observation {
         Observation::particles(s)

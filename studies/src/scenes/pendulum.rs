@@ -118,7 +118,7 @@ impl Scene for Pendulum {
             source: "Jacobi's elliptic functions (E. T. Whittaker, Analytical Dynamics (1937), section 44)",
             horizon_s: 2.75,
             time_scale_s: 1.0 / self.omega0().to_f64(),
-            coarsest_steps: 16,
+            coarsest_steps: 8,
         }
     }
 

@@ -122,7 +122,7 @@ impl Scene for QuadraticDrag {
             source: "E. J. Routh, Dynamics of a Particle (1898), article 117",
             horizon_s: 2.75,
             time_scale_s: 1.0 / self.terminal().1.to_f64(),
-            coarsest_steps: 16,
+            coarsest_steps: 8,
         }
     }
 

@@ -133,7 +133,7 @@ impl Scene for SpringChain {
             source: "normal modes (A. L. Fetter, J. D. Walecka, Theoretical Mechanics (1980), section 24)",
             horizon_s: 2.25,
             time_scale_s: 1.0 / self.stiffest(),
-            coarsest_steps: 16,
+            coarsest_steps: 4,
         }
     }
 
