@@ -37,7 +37,7 @@ pub struct Common {
     #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
     pub steps: Vec<u64>,
 
-    /// Fewer halvings and shorter runs
+    /// One preset of each scene, fewer halvings and shorter runs
     #[arg(long)]
     pub quick: bool,
 
@@ -71,7 +71,12 @@ impl Common {
             let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         }
         let mut chosen = if self.scene.is_empty() {
-            scenes::catalogue()
+            let mut all = scenes::catalogue();
+            if self.quick {
+                // One preset of each scene.
+                all.dedup_by_key(|scene| scene.id().split('/').next());
+            }
+            all
         } else {
             self.scene.iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
         };

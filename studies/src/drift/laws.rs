@@ -167,7 +167,12 @@ fn claim(row: &LawRow) -> Option<Claim> {
         theory: theory_text,
         measured,
         bound,
-        verdict: Truth::from_comparison(holds),
+        // Where two laws fit alike, nothing was measured that could tell which.
+        verdict: if band.is_none() && row.law == Law::Unclassified {
+            Truth::NotTested
+        } else {
+            Truth::from_comparison(holds)
+        },
     })
 }
 
