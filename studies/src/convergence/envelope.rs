@@ -27,7 +27,7 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
     let span = samples.first().zip(samples.get(middle)).map_or(1.0, |(a, b)| (a.h_s / b.h_s).ln());
     // Rounding fills the fine end of a sweep in f32 and f64; the claims are made in double-double.
     let halves = coarse_top / fine_top;
-    let holds = halves <= HALVES_DIFFER && halves >= 1.0 / HALVES_DIFFER;
+    let holds = (1.0 / HALVES_DIFFER..=HALVES_DIFFER).contains(&halves);
     OrderRow {
         scene: first.scene.clone(),
         method: first.method.clone(),

@@ -139,7 +139,7 @@ impl Linear {
 const VANISHING: f64 = 1e-12;
 
 /// End of RK4's stability interval on the negative real axis: the root of 1 - x/2 + x^2/6 - x^3/24 = 0, so that R(-x) = 1.
-pub(crate) const RK4_REAL: f64 = 2.785_293_563_405_281_6;
+pub(crate) const RK4_REAL: f64 = 2.785_293_563_405_282;
 
 /// |R(h lambda)|^2 - 1 of RK4, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24.
 pub(crate) fn rk4_excess(re: f64, im: f64) -> f64 {
