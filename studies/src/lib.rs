@@ -19,6 +19,7 @@ pub mod order;
 pub mod produce;
 mod provenance;
 pub mod residual;
+pub mod rotation;
 pub mod scene;
 pub mod scenes;
 pub mod special;

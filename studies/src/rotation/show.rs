@@ -1,0 +1,314 @@
+//! Tables and charts.
+
+use reports::{Axis, AxisName, Figure, Layer, Series, Table};
+
+use super::claims::{conserved, law};
+use super::laws::{self, nutation_factor};
+use super::long::Fate;
+use super::orders::{Seen, orders};
+use super::row::{Experiment, Row};
+use super::scheme::Scheme;
+use crate::error::Error;
+use crate::study::{Derived, distinct, short};
+
+/// The one table for an engine's issue thread, orders and errors by scene, and the printed numbers.
+pub(super) fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+    let seen = orders(rows);
+    Ok(vec![schemes(rows, &seen), by_scene(&seen), published(rows)])
+}
+
+fn of_scheme<'a>(rows: &'a [Row], experiment: Experiment, scheme: &str) -> Vec<&'a Row> {
+    rows.iter().filter(|row| row.experiment == experiment && row.scheme == scheme).collect()
+}
+
+/// The same table as CSV.
+fn derived(name: &'static str, caption: &'static str, table: Table) -> Derived {
+    let quote = |cell: &String| {
+        if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.clone() }
+    };
+    let line = |cells: &Vec<String>| cells.iter().map(quote).collect::<Vec<_>>().join(",") + "\n";
+    let csv = std::iter::once(&table.headers).chain(&table.rows).map(line).collect();
+    Derived { name, caption, csv, table }
+}
+
+fn schemes(rows: &[Row], seen: &[Seen]) -> Derived {
+    let headers = [
+        "scheme",
+        "order",
+        "torque evaluations a step",
+        "attitude error (rad)",
+        "at h (s)",
+        "dT in a step, 2 dT/h² (W/s)",
+        "d|L|²/h² (N² m²)",
+        "drift of T",
+        "drift of |L|",
+        "direction of L",
+        "nutation factor, disc",
+        "disc at 60 rad/s, h = 1/60 s",
+        "long run ends at",
+    ];
+    let numbers = &headers[1..7];
+    let mut table = Table::new(&headers, numbers);
+    for scheme in Scheme::all() {
+        let id = scheme.id();
+        let Some(sweep) =
+            seen.iter().find(|s| s.scheme == id && s.quantity == "attitude" && s.subject == "torque-free-spin")
+        else {
+            continue;
+        };
+        let step = of_scheme(rows, Experiment::StepLaw, &id);
+        let change =
+            |name: &str| short(step.iter().find(|row| row.quantity.contains(name)).and_then(|row| row.value).map(tidy));
+        let drift = of_scheme(rows, Experiment::Drift, &id);
+        let grown = |name: &str| {
+            law(&drift, name).map_or("–".to_owned(), |(law, size)| format!("{law}, {}", short(Some(size))))
+        };
+        let factor = of_scheme(rows, Experiment::Nutation, &id)
+            .into_iter()
+            .find(|row| row.subject == "disc")
+            .and_then(|row| row.value);
+        let fate = Fate::of(&of_scheme(rows, Experiment::Disc, &id));
+        table.push([
+            scheme.label(),
+            short(sweep.order),
+            format!("{:.1}", sweep.evaluations),
+            short(sweep.reference.map(|r| r.0)),
+            short(sweep.reference.map(|r| r.1)),
+            change("dT"),
+            change("|L|"),
+            grown("T / T0 - 1"),
+            grown("|L| / |L0| - 1"),
+            grown("angle of L"),
+            short(factor),
+            fate.map_or("–".to_owned(), Fate::words),
+            destination(rows, &id),
+        ]);
+    }
+    derived(
+        "rotation-schemes",
+        "Every scheme on a free asymmetric body (torque-free-spin), on a disc at 60 rad/s, and after a long run. Steps: 'linear step' \
+         is the normalised q + (h/2) ω q; without the gyroscopic term T and |L| are kept and the motion is wrong",
+        table,
+    )
+}
+
+/// What is nothing but rounding is shown as zero.
+fn tidy(x: f64) -> f64 {
+    if x.abs() < 1e-9 { 0.0 } else { x }
+}
+
+/// The end of the long run from far from all axes.
+fn destination(rows: &[Row], scheme: &str) -> String {
+    let run: Vec<&Row> = of_scheme(rows, Experiment::LongRun, scheme)
+        .into_iter()
+        .filter(|row| row.subject == "start far from all axes")
+        .collect();
+    let ends = |name: &str| run.iter().rev().find(|row| row.quantity == name).and_then(|row| row.value);
+    let (Some(axis), Some(length)) = (ends("axis coordinate"), ends("|L| / |L0|")) else { return "–".to_owned() };
+    if let Some(step) = run[0].at_step {
+        return format!("blows up at step {step}");
+    }
+    let start = run.iter().find(|row| row.quantity == "axis coordinate").and_then(|row| row.value).unwrap_or(axis);
+    let place = match axis {
+        x if (x - start).abs() < 0.01 => "where it was",
+        x if x > 0.95 => "the axis of least inertia",
+        x if x < 0.05 => "the axis of most inertia",
+        x if x > start => "on the way to least inertia",
+        _ => "on the way to most inertia",
+    };
+    format!("{place}, |L| × {}", short(Some(length)))
+}
+
+fn by_scene(seen: &[Seen]) -> Derived {
+    let headers = [
+        "scene",
+        "scheme",
+        "quantity",
+        "order",
+        "error at the finest step",
+        "unit",
+        "error at the reference step",
+        "reference h (s)",
+        "conserved without torque",
+    ];
+    let mut table =
+        Table::new(&headers, &["order", "error at the finest step", "error at the reference step", "reference h (s)"]);
+    for s in seen {
+        let kept = Scheme::from_id(&s.scheme).map_or("–".to_owned(), |scheme| {
+            conserved(scheme).iter().map(|c| format!("{c:?}")).collect::<Vec<_>>().join(", ")
+        });
+        table.push([
+            s.subject.clone(),
+            s.scheme.clone(),
+            s.quantity.clone(),
+            short(s.order),
+            short(s.finest),
+            if s.quantity == "attitude" { "rad" } else { "rad/s" }.to_owned(),
+            short(s.reference.map(|r| r.0)),
+            short(s.reference.map(|r| r.1)),
+            kept,
+        ]);
+    }
+    derived("rotation-orders", "Order and error of every scheme on every rigid-body scene", table)
+}
+
+fn published(rows: &[Row]) -> Derived {
+    let headers = ["source", "scheme", "step (s)", "quantity", "published", "ours", "agrees to the printed digits"];
+    let mut table = Table::new(&headers, &["step (s)", "published", "ours"]);
+    for row in rows.iter().filter(|row| row.experiment == Experiment::Published) {
+        table.push([
+            row.subject.clone(),
+            row.scheme.clone(),
+            row.h_s.to_string(),
+            row.quantity.clone(),
+            row.theory.map_or_else(String::new, |x| x.to_string()),
+            row.value.map_or_else(String::new, |x| format!("{x:.9}")),
+            if row.agrees() == Some(true) { "yes" } else { "no" }.to_owned(),
+        ]);
+    }
+    derived(
+        "rotation-published",
+        "Published against ours: boxes by Gazebo's benchmark, a spinning box by MuJoCo's test",
+        table,
+    )
+}
+
+/// Schemes drawn in the charts, in the order of their colours.
+const DRAWN: [&str; 8] = [
+    "semi-implicit-euler/body-omega",
+    "explicit-euler/world-omega",
+    "semi-implicit-euler/world-momentum",
+    "semi-implicit-euler/without-gyroscopic-term",
+    "implicit-gyroscopic",
+    "restored-momentum",
+    "momentum-midpoint",
+    "free-splitting",
+];
+
+fn name(id: &str) -> String {
+    match id {
+        "semi-implicit-euler/body-omega" => "semi-implicit, ω".to_owned(),
+        "explicit-euler/world-omega" => "explicit, world ω".to_owned(),
+        "semi-implicit-euler/world-momentum" => "Euler, world L".to_owned(),
+        "semi-implicit-euler/without-gyroscopic-term" => "no gyroscopic term".to_owned(),
+        other => other.replace('-', " "),
+    }
+}
+
+pub(super) fn figures(rows: &[Row]) -> Vec<Figure> {
+    let mut figures: Vec<Figure> = ["torque-free-spin", "heavy-top", "sphere-torque"]
+        .into_iter()
+        .filter_map(|scene| errors(rows, scene))
+        .collect();
+    figures.extend(
+        distinct(rows.iter().filter(|r| r.experiment == Experiment::LongRun).map(|r| r.subject.as_str()))
+            .into_iter()
+            .map(|s| axis(rows, s)),
+    );
+    figures.push(nutation(rows));
+    figures
+        .retain(|figure| figure.layers.iter().any(|layer| matches!(layer, Layer::Series(s) if !s.points.is_empty())));
+    figures
+}
+
+fn command() -> String {
+    "cargo run --release --bin rotation".to_owned()
+}
+
+fn errors(rows: &[Row], scene: &str) -> Option<Figure> {
+    let of_scene: Vec<&Row> = rows
+        .iter()
+        .filter(|row| row.experiment == Experiment::Error && row.subject == scene && row.quantity == "attitude")
+        .collect();
+    let mut layers: Vec<Layer> = DRAWN
+        .iter()
+        .enumerate()
+        .map(|(color, id)| {
+            let of_scheme = of_scene.iter().filter(|row| row.scheme == *id);
+            let points = of_scheme.filter_map(|row| Some([row.h_s, row.value.filter(|e| *e > 0.0)?])).collect();
+            Layer::Series(Series::new(name(id), color, points))
+        })
+        .collect();
+    layers.extend([1.0, 2.0].map(|order| Layer::SlopeTriangle { order }));
+    (!of_scene.is_empty()).then(|| Figure {
+        id: format!("rotation-error-{scene}"),
+        title: format!("{scene}: attitude error of eight schemes"),
+        caption: "First-order schemes differ by a factor, second-order ones fall twice as fast; where the gyroscopic term matters, \
+                  a scheme without it does not converge at all."
+            .to_owned(),
+        x: Axis::log("step size h (s)"),
+        y: Axis::log("attitude error at the end (rad)"),
+        layers,
+        command: command(),
+        data: "rotation.csv".to_owned(),
+        ..Figure::default()
+    })
+}
+
+fn axis(rows: &[Row], subject: &str) -> Figure {
+    let mut layers: Vec<Layer> = DRAWN
+        .iter()
+        .enumerate()
+        .map(|(color, id)| {
+            let of = rows.iter().filter(|r| {
+                r.experiment == Experiment::LongRun
+                    && r.subject == subject
+                    && r.scheme == *id
+                    && r.quantity == "axis coordinate"
+            });
+            let points = of.filter_map(|row| Some([row.t_s, row.value?])).collect();
+            Layer::Series(Series { marker: None, ..Series::new(name(id), color, points) })
+        })
+        .collect();
+    // Moments 1, 2, 3: (1/2 - 1/3) / (1 - 1/3).
+    layers.push(Layer::Guide { axis: AxisName::Y, at: 0.25, label: "separatrix".to_owned() });
+    Figure {
+        id: format!("rotation-axis-{}", subject.replace(' ', "-")),
+        title: format!("Where a free body ends up: {subject}"),
+        caption: "0: it spins about the axis of most inertia, 1: of least. The exact motion keeps the value; the scheme decides \
+                  where the body drifts."
+            .to_owned(),
+        x: Axis::linear("time (s)"),
+        y: Axis::linear("axis coordinate (1)").with_range(-0.05, 1.05),
+        layers,
+        command: command(),
+        data: "rotation.csv".to_owned(),
+        ..Figure::default()
+    }
+}
+
+/// The size of theory's curve.
+const CURVE: u32 = 64;
+
+/// The factor against the step: theory's curves, and what was measured.
+fn nutation(rows: &[Row]) -> Figure {
+    let mut layers = vec![Layer::Guide { axis: AxisName::Y, at: 1.0, label: "kept".to_owned() }];
+    for (color, id) in DRAWN.iter().enumerate() {
+        let Some(scheme) = Scheme::from_id(id) else { continue };
+        let of = rows.iter().filter(|r| r.experiment == Experiment::Nutation && r.subject == "disc" && r.scheme == *id);
+        let mut points: Vec<[f64; 2]> = of.filter_map(|row| Some([laws::DISC_SPIN * row.h_s, row.value?])).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        layers.push(Layer::Series(Series { line: None, ..Series::new(name(id), color, points) }));
+        let curve = (1..=CURVE).filter_map(|i| {
+            let x = 2.0 * f64::from(i) / f64::from(CURVE);
+            Some([x, nutation_factor(scheme, 2.0, x)?])
+        });
+        let points: Vec<[f64; 2]> = curve.collect();
+        if !points.is_empty() {
+            layers.push(Layer::Curve { name: String::new(), points, color: Some(color) });
+        }
+    }
+    Figure {
+        id: "rotation-nutation-disc".to_owned(),
+        title: "Nutation of a spinning disc: its factor in one step".to_owned(),
+        caption: "Above 1 the wobble grows in every step, below 1 it is damped, at 1 it is kept. Points are eigenvalues of the \
+                  linearised step, dashed curves the formulas."
+            .to_owned(),
+        x: Axis::linear("ω h (rad in a step)"),
+        y: Axis::linear("nutation factor a step (1)"),
+        layers,
+        command: command(),
+        data: "rotation.csv".to_owned(),
+        ..Figure::default()
+    }
+}
