@@ -23,5 +23,6 @@ pub mod rotation;
 pub mod scene;
 pub mod scenes;
 pub mod special;
+pub mod stability;
 pub mod study;
 pub mod sweep;

@@ -13,6 +13,7 @@ use crate::observation::{Observation, Quantity};
 use crate::residual::{Residual, residual};
 use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
 use crate::scenes::parameters::Parameters;
+use crate::stability::displaced::run_displaced;
 
 /// What a reader should know of a scene before looking at its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,6 +240,13 @@ pub trait AnyScene: Send + Sync {
         let _ = (run, stride);
         None
     }
+
+    /// Runs one trajectory from the start moved by `displacement` (configuration, then velocity) and observes it at the
+    /// steps `looks`; `None` on a curved space.
+    fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
+        let _ = (run, displacement, looks);
+        None
+    }
 }
 
 /// Particles, or coordinates of a flat space: the scene is the model.
@@ -274,6 +282,9 @@ impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particle
     }
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))
+    }
+    fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
+        Some(in_precision!(run.precision, T => run_displaced::<T, S>(&self.scene, run, displacement, looks)))
     }
 }
 
