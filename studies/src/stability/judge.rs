@@ -41,15 +41,16 @@ pub fn looks(log2_steps: u32) -> Vec<u64> {
 /// In windows of doubling length the largest size of exponential growth rises by a factor that squares itself from window to
 /// window, that of a power stays the same, that of a bounded size tends to one.
 pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
+    let start = sizes.first().map_or(0.0, |(_, size)| *size);
+    // What has gone stays gone; further on the numbers would underflow.
+    if sizes.iter().any(|(_, size)| *size <= GONE * start) {
+        return Some(Trend::Bounded);
+    }
     if sizes.iter().any(|(_, size)| !size.is_finite()) {
         return Some(Trend::Exponential);
     }
     let maxima = window_maxima(sizes);
     let [.., before, last_but_one, last] = maxima[..] else { return None };
-    let start = sizes.first().map_or(0.0, |(_, size)| *size);
-    if last <= GONE * start {
-        return Some(Trend::Bounded);
-    }
     let (earlier, now) = (last_but_one / before, last / last_but_one);
     if now > HUGE {
         return Some(Trend::Exponential);

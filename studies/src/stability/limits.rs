@@ -22,7 +22,7 @@ const LENGTHS: [u32; 4] = [10, 13, 16, 20];
 const IMPLICIT_LENGTHS: [u32; 2] = [8, 11];
 
 /// One job: a scene, a method and a precision.
-pub fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
+pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
     let Some(theory) = amplification::limit(stepping) else { return Vec::new() };
     let mut rows = vec![limit_row(stepping, theory)];
     if theory == StabilityLimit::NoStep && stepping.precision == Precision::F64 {
@@ -94,7 +94,7 @@ const GENERIC: [f64; 32] = {
 };
 
 /// Size of the difference of two runs, sqrt(|dv|^2 + |dq|^2 / scale^2), at the steps of [`judge::looks`].
-pub fn difference(stepping: &Stepping<'_>, h_s: f64, displacement: &[f64], log2_steps: u32) -> Vec<(u64, f64)> {
+fn difference(stepping: &Stepping<'_>, h_s: f64, displacement: &[f64], log2_steps: u32) -> Vec<(u64, f64)> {
     difference_at(stepping, h_s, displacement, 1 << log2_steps, &judge::looks(log2_steps))
 }
 
@@ -108,8 +108,17 @@ fn difference_at(
     let walk = |displacement: &[f64]| stepping.walk(h_s, steps, displacement, looks);
     let (Some(own), Some(moved)) = (walk(&[]), walk(displacement)) else { return Vec::new() };
     let scale = stepping.scene.scene().info().time_scale_s;
-    let mut sizes: Vec<(u64, f64)> =
-        own.seen.iter().zip(&moved.seen).map(|((step, a), (_, b))| (*step, size(&coordinates(a), &coordinates(b), scale))).collect();
+    let rounding = stepping.precision.epsilon();
+    let mut sizes: Vec<(u64, f64)> = Vec::with_capacity(looks.len());
+    for ((step, a), (_, b)) in own.seen.iter().zip(&moved.seen) {
+        let (a, b) = (coordinates(a), coordinates(b));
+        let difference = size(&a, &b, scale);
+        let of_terms = size(&a, &vec![fx128::ZERO; a.len()], scale);
+        // A difference below the rounding of its terms tells nothing: it counts as unchanged.
+        let start = sizes.first().map_or(difference, |(_, start)| *start);
+        let noise = *step as f64 * rounding * of_terms;
+        sizes.push((*step, if difference < noise { difference.min(start) } else { difference }));
+    }
     if let Some(step) = own.failed_step.or(moved.failed_step) {
         sizes.push((step, f64::INFINITY));
     }
