@@ -2,7 +2,6 @@
 
 use faer::fx128;
 use integrator::Single;
-use integrator::methods::MethodId;
 
 use super::amplification;
 use super::bisect::{Found, WIDTH, bracket};
@@ -12,7 +11,7 @@ use super::judge::{self, Trend};
 use super::{Part, Row};
 use crate::observation::norm;
 use crate::run::Precision;
-use crate::scene::{AnyScene, StabilityLimit};
+use crate::scene::StabilityLimit;
 
 /// Steps tried, in natural time scales of the scene.
 pub const TRIED: [f64; 2] = [1.0 / 32.0, 1024.0];
@@ -169,19 +168,13 @@ fn rate_row(stepping: &Stepping<'_>, z: f64) -> Option<Row> {
         theory: Some(theory),
         failure: Failure::ExponentialGrowth,
         steps,
-        ..Row::new(Part::GrowthRate, stepping.scene.id(), stepping.method.id(), stepping.precision, "ln growth", "1/step")
+        ..Row::new(
+            Part::GrowthRate,
+            stepping.scene.id(),
+            stepping.method.id(),
+            stepping.precision,
+            "ln growth",
+            "1/step",
+        )
     })
-}
-
-/// Jobs of this part: every scene, method and precision in question.
-pub(super) fn jobs<'a>(scenes: &[&'a dyn AnyScene], methods: &[MethodId], precisions: &[Precision]) -> Vec<Stepping<'a>> {
-    let mut jobs = Vec::new();
-    for &scene in scenes {
-        for &method in methods {
-            for &precision in precisions.iter().filter(|p| **p != Precision::DoubleDouble) {
-                jobs.push(Stepping { scene, method, precision });
-            }
-        }
-    }
-    jobs
 }

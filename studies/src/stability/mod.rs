@@ -1,16 +1,36 @@
 //! Where do methods fail? Largest stable steps, measured and held against theory; what happens beyond them.
 
 pub mod amplification;
+pub mod answer;
 pub mod bisect;
+pub mod claims;
 pub mod displaced;
 pub mod failure;
+mod figures;
 pub mod judge;
 pub mod limits;
+pub mod maps;
+pub mod models;
+mod nonlinear;
+mod pictures;
+pub mod spin;
+mod tables;
 
+pub use nonlinear::UNCONDITIONAL;
+
+use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
+use crate::error::Error;
 use crate::run::Precision;
+use crate::scene::AnyScene;
+use crate::study::{Derived, Selection, Study};
+use crate::sweep::in_parallel;
+use displaced::Stepping;
 use failure::Failure;
+use maps::{Grid, MapRow};
+use models::Scheme;
+use spin::SpinScheme;
 
 /// What a row belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -20,6 +40,26 @@ pub enum Part {
     Limit,
     /// Growth in one step of a method without a stable step.
     GrowthRate,
+    /// What the methods without a limit do at large steps.
+    Unconditional,
+    /// A cell of the damped oscillator's map: 1 bounded, 0 not.
+    DampedMap,
+    /// A cell of the spinning body's map: the nutation factor of one step.
+    SpinMap,
+    /// A cell of the complex plane: |R(h lambda)|.
+    Region,
+    /// A cell of Kepler's map: orbits survived.
+    KeplerMap,
+    /// Limits of quadratic drag.
+    QuadraticDrag,
+    /// The largest step of a pendulum against its amplitude.
+    PendulumAmplitude,
+    /// When a free body blows up.
+    BlowUp,
+    /// The energy of a bouncing ball.
+    Ball,
+    /// A point of a picture of a failure.
+    Picture,
 }
 
 /// One measurement. What is measured, and its unit, stand in `quantity` and `unit`.
@@ -86,4 +126,115 @@ impl Row {
             note: String::new(),
         }
     }
+}
+
+/// The study.
+pub struct Stability;
+
+impl Study for Stability {
+    type Row = Row;
+    const ID: &'static str = "stability";
+    const TITLE: &'static str = "Where does it break? Stability limits";
+    const INTRO: &'static str = "The largest stable step of every method on every linear scene, found by bisection on the \
+        running scene and held against the amplification matrix and the closed forms; maps of where a method holds; and one \
+        picture for each way in which it can fail.";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        let jobs = jobs(selection);
+        in_parallel(&jobs, Job::cost, &selection.progress, Job::rows).into_iter().flatten().collect()
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        tables::all(rows)
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        figures::all(rows)
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        claims::all(rows)
+    }
+}
+
+/// The part of a scene's name before its preset.
+fn base(id: &str) -> &str {
+    id.split('/').next().unwrap_or(id)
+}
+
+enum Job<'a> {
+    Limit(Stepping<'a>),
+    Map(MapRow, Grid, usize),
+    Unconditional,
+    Nonlinear(Vec<&'static str>),
+    Pictures(Vec<&'static str>),
+}
+
+fn jobs(selection: &Selection) -> Vec<Job<'_>> {
+    let mut jobs = Vec::new();
+    for scene in &selection.scenes {
+        for &method in &selection.methods {
+            for &precision in selection.precisions.iter().filter(|p| **p != Precision::DoubleDouble) {
+                if !selection.quick || precision == Precision::F64 {
+                    jobs.push(Job::Limit(Stepping { scene: scene.as_ref(), method, precision }));
+                }
+            }
+        }
+    }
+    let bases: Vec<&'static str> = selection.scenes.iter().map(|scene| base(scene.id())).collect();
+    for map in maps_of(&bases) {
+        let grid = if selection.quick { map.grid().coarse() } else { map.grid() };
+        jobs.extend((0..grid.ny).map(|j| Job::Map(map, grid, j)));
+    }
+    if bases.contains(&"oscillator") {
+        jobs.push(Job::Unconditional);
+    }
+    jobs.extend(
+        bases_once(&bases).into_iter().flat_map(|base| [Job::Nonlinear(vec![base]), Job::Pictures(vec![base])]),
+    );
+    jobs
+}
+
+fn bases_once(bases: &[&'static str]) -> Vec<&'static str> {
+    crate::study::distinct(bases.iter().copied())
+}
+
+/// The maps that belong to the chosen scenes.
+fn maps_of(bases: &[&str]) -> Vec<MapRow> {
+    let mut maps = Vec::new();
+    if bases.contains(&"damped-oscillator") {
+        maps.extend(Scheme::ALL.map(MapRow::Damped));
+    }
+    if bases.contains(&"oscillator") {
+        maps.extend(maps::ONE_STEP.map(MapRow::Region));
+    }
+    if bases.contains(&"torque-free-spin") || bases.contains(&"symmetric-top") {
+        maps.extend(SpinScheme::ALL.map(MapRow::Spin));
+    }
+    if bases.contains(&"kepler") {
+        maps.extend(maps::ORBITING.map(MapRow::Kepler));
+    }
+    maps
+}
+
+impl Job<'_> {
+    fn cost(&self) -> u64 {
+        match self {
+            Job::Nonlinear(_) | Job::Pictures(_) => 10,
+            Job::Limit(stepping) => 1 + dimension_cost(stepping.scene),
+            Job::Map(MapRow::Kepler(_), ..) => 5,
+            _ => 1,
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        match self {
+            Job::Limit(stepping) => limits::rows(stepping),
+            Job::Map(map, grid, j) => map.rows(grid, *j),
+            Job::Unconditional => nonlinear::unconditional_rows(),
+            Job::Nonlinear(bases) => nonlinear::rows(|base| bases.contains(&base)),
+            Job::Pictures(bases) => pictures::rows(|base| bases.contains(&base)),
+        }
+    }
+}
+
+fn dimension_cost(scene: &dyn AnyScene) -> u64 {
+    displaced::dimension(scene) as u64
 }

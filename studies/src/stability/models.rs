@@ -242,10 +242,8 @@ pub fn orbits_survived(method: MethodId, eccentricity: f64, steps_an_orbit: f64,
         fn visit<A: Method<f64, KeplerPlane>>(self, method: &A) -> f64 {
             let e = self.eccentricity;
             let h = std::f64::consts::TAU / self.steps_an_orbit;
-            let mut s = State {
-                q: Vector2::new(-(1.0 + e), 0.0),
-                v: Vector2::new(0.0, -((1.0 - e) / (1.0 + e)).sqrt()),
-            };
+            let mut s =
+                State { q: Vector2::new(-(1.0 + e), 0.0), v: Vector2::new(0.0, -((1.0 - e) / (1.0 + e)).sqrt()) };
             let steps = (f64::from(self.most) * self.steps_an_orbit) as u64;
             for i in 1..=steps {
                 s = method.step(&KeplerPlane, 0.0, h, s);

@@ -1,0 +1,178 @@
+//! The answer to a user's question: what is the largest step, and what happens beyond it?
+
+use std::fmt::Write;
+
+use faer::fx128;
+use integrator::Real;
+
+use super::amplification;
+use super::bisect::{Found, bracket};
+use super::displaced::Stepping;
+use super::limits;
+use super::tables::limit_words;
+use crate::error::Error;
+use crate::observation::Value;
+use crate::run::{Outcome, Precision, Run};
+use crate::scene::AnyScene;
+use crate::study::Selection;
+
+/// A step to be judged.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Question {
+    /// The step in question, s.
+    pub step_s: Option<f64>,
+    /// Frames a second that a simulation has to keep: how many substeps does each need?
+    pub rate_hz: Option<f64>,
+}
+
+/// What is said, and whether every step asked about is stable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// For the user to read.
+    pub text: String,
+    /// False if a step asked about is not stable.
+    pub stable: bool,
+}
+
+/// Answers for every chosen scene and method, in the first chosen precision (f64 if all are).
+///
+/// # Errors
+/// A step or a rate that is not a positive number.
+pub fn answer(selection: &Selection, question: Question) -> Result<Answer, Error> {
+    for (flag, value) in [("--step", question.step_s), ("--rate", question.rate_hz)] {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            let message =
+                format!("{value} is not a positive number; give seconds (--step 0.01) or frames a second (--rate 60)");
+            return Err(Error::Plan { place: flag.to_owned(), message });
+        }
+    }
+    let all = selection.precisions.len() == Precision::ALL.len();
+    let precision = if all { Precision::F64 } else { selection.precisions[0] };
+    let mut answer = Answer { text: String::new(), stable: true };
+    for scene in &selection.scenes {
+        for &method in &selection.methods {
+            let stepping = Stepping { scene: scene.as_ref(), method, precision };
+            one(&stepping, question, &mut answer);
+        }
+    }
+    Ok(answer)
+}
+
+fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
+    let scale = stepping.scene.scene().info().time_scale_s;
+    let mut line = |text: String| {
+        // Writing to a string does not fail.
+        let _ = writeln!(answer.text, "{text}");
+    };
+    line(format!("{} with {} in {}", stepping.scene.id(), stepping.method.title(), stepping.precision.id()));
+    let theory = amplification::limit(stepping).and_then(limits::number);
+    let found = match theory {
+        Some(_) => limits::measure(stepping),
+        None => measure_nonlinear(stepping.scene, stepping),
+    };
+    match theory {
+        Some(limit) => line(format!("  theory (amplification matrix): {}", seconds(limit))),
+        None => line(format!(
+            "  no linear theory; judged by running {TIME_SCALES} time scales: a run fails that leaves the range of the exact motion {LEAVES} times over"
+        )),
+    }
+    if let Some((limit, reason)) = stepping.scene.scene().stability_limit(stepping.method) {
+        line(format!("  closed form: {} ({reason})", limits::number(limit).map_or_else(String::new, seconds)));
+    }
+    let limit_s = match found {
+        Found::NoStep { tried_s } => {
+            line(format!("  measured: no stable step; {tried_s:.6} s fails already"));
+            0.0
+        }
+        Found::Bracket { low_s, high_s } => {
+            line(format!(
+                "  measured: holds at {low_s:.6} s, fails at {high_s:.6} s (h / time scale {:.5} .. {:.5})",
+                low_s / scale,
+                high_s / scale
+            ));
+            theory.filter(|t| low_s <= *t && *t <= high_s).unwrap_or(low_s)
+        }
+        Found::Unlimited { tried_s } => {
+            line(format!("  measured: no limit; {tried_s:.6} s holds still"));
+            f64::INFINITY
+        }
+    };
+    if let Some(step) = question.step_s {
+        let stable = step <= limit_s;
+        answer.stable &= stable;
+        let verdict = if stable { "stable" } else { "NOT stable" };
+        let margin = if limit_s == 0.0 || limit_s.is_infinite() {
+            String::new()
+        } else {
+            format!(", {:.4} of the limit", step / limit_s)
+        };
+        let _ =
+            writeln!(answer.text, "  step {step} s: {verdict}{margin}{}", substeps_words(step, limit_s, "this step"));
+    }
+    if let Some(rate) = question.rate_hz {
+        let frame = 1.0 / rate;
+        let _ = writeln!(answer.text, "  {rate} frames a second{}", substeps_words(frame, limit_s, "a frame"));
+        answer.stable &= limit_s > 0.0;
+    }
+}
+
+fn seconds(limit: f64) -> String {
+    if limit == 0.0 || limit.is_infinite() {
+        format!("{} is the limit", limit_words(limit))
+    } else {
+        format!("h <= {limit:.6} s")
+    }
+}
+
+/// Substeps that a step of `h_s` must be cut into, at least one; `None` where no number helps.
+pub fn substeps(h_s: f64, limit_s: f64) -> Option<u64> {
+    // At the limit itself a step is marginal and counts as stable; a quotient of 2 + 1e-16 is 2.
+    (limit_s > 0.0).then(|| ((h_s / limit_s * (1.0 - 4.0 * f64::EPSILON)).ceil() as u64).max(1))
+}
+
+fn substeps_words(h_s: f64, limit_s: f64, of: &str) -> String {
+    match substeps(h_s, limit_s) {
+        Some(1) => format!(": 1 substep in {of} is enough for stability"),
+        Some(n) => format!(": {n} substeps in {of} are needed for stability"),
+        None => ": no number of substeps makes this method stable".to_owned(),
+    }
+}
+
+/// Length of a run on a scene without a linear theory, in natural time scales.
+const TIME_SCALES: f64 = 64.0;
+/// A run has failed whose coordinates exceed the largest of the exact motion by this factor.
+const LEAVES: f64 = 4.0;
+
+/// The largest step with which a scene stays within a multiple of the range of its exact motion.
+fn measure_nonlinear(scene: &dyn AnyScene, stepping: &Stepping<'_>) -> Found {
+    let scale = scene.scene().info().time_scale_s;
+    let end = TIME_SCALES * scale;
+    let sizes = |seen: &crate::observation::Observation| -> Vec<f64> {
+        seen.values
+            .iter()
+            .map(|(quantity, value)| match value {
+                Value::Vector(_) => seen.scale(*quantity),
+                Value::Rotation(_) => 1.0,
+            })
+            .collect()
+    };
+    let mut range: Vec<f64> = Vec::new();
+    for i in 0..=512 {
+        let at = sizes(&scene.exact(fx128::lit(end * f64::from(i) / 512.0)));
+        range.resize(at.len(), 0.0);
+        for (largest, x) in range.iter_mut().zip(at) {
+            *largest = largest.max(x);
+        }
+    }
+    let holds = |h: f64| {
+        let steps = ((end / h).ceil() as u64).max(4);
+        let run = Run::new(stepping.method, stepping.precision, h * steps as f64, steps);
+        let trajectory = scene.run(&run, 1);
+        trajectory.outcome == Outcome::Finished
+            && trajectory
+                .seen
+                .iter()
+                .all(|(_, seen)| sizes(seen).iter().zip(&range).all(|(x, most)| *x <= LEAVES * most))
+    };
+    bracket(scale / 64.0, 64.0 * scale, 0.01, holds)
+}
