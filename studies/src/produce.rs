@@ -8,7 +8,6 @@ use crate::drift::DriftStudy;
 use crate::error::Error;
 use crate::provenance;
 use crate::rotation::Rotation;
-use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
 
 /// What a study has made: files to be written, and its part of the page.
@@ -23,12 +22,7 @@ pub struct Product {
 
 /// Every study of the report, in its order.
 pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
-    Ok(vec![
-        of::<Convergence>(selection)?,
-        of::<DriftStudy>(selection)?,
-        of::<Rotation>(selection)?,
-        of::<Stability>(selection)?,
-    ])
+    Ok(vec![of::<Convergence>(selection)?, of::<DriftStudy>(selection)?, of::<Rotation>(selection)?])
 }
 
 /// Runs one study and makes all that follows from its rows.

@@ -15,9 +15,9 @@ use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::{Observation, norm};
 use crate::run::{Outcome, Precision, Run};
-use crate::scene::{AnyScene, Balance, Entry};
+use crate::scene::{AnyScene, Balance, Entry, ExpectedGrowth};
 use crate::study::{Derived, Selection, Study};
-use crate::sweep::in_parallel;
+use crate::sweep::{Progress, in_parallel};
 
 /// Length of a run in natural time scales of the scene; a power of two.
 const TIME_SCALES: f64 = 1024.0;
@@ -120,17 +120,24 @@ impl Study for DriftStudy {
         a linear one does not, an exponential one ruins every run that is long enough.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
+        let scales = if selection.quick { QUICK_TIME_SCALES } else { TIME_SCALES };
+        let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
+        let tracks = in_parallel(&scenes, |_| 1, &Progress::silent(), |&scene| Track::of(scene, scales));
         let mut jobs = Vec::new();
-        for scene in &selection.scenes {
+        for track in &tracks {
             for &method in &selection.methods {
                 // Rounding is not the question here, except that a run without any shows a law undisturbed.
                 for &precision in selection.precisions.iter().filter(|p| **p != Precision::DoubleDouble) {
-                    jobs.push(Job { scene: scene.as_ref(), method, precision, quick: selection.quick });
+                    jobs.push((track, method, precision));
                 }
             }
         }
-        let cost = |job: &Job<'_>| if job.method.is_implicit() { 20 } else { u64::from(job.method.order()) };
-        in_parallel(&jobs, cost, &selection.progress, Job::rows).into_iter().flatten().collect()
+        let cost = |job: &(&Track<'_>, MethodId, Precision)| {
+            if job.1.is_implicit() { 20 } else { u64::from(job.1.order()) }
+        };
+        let rows =
+            in_parallel(&jobs, cost, &selection.progress, |&(track, method, precision)| track.rows(method, precision));
+        rows.into_iter().flatten().collect()
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         Ok(vec![laws::table(rows)?])
@@ -143,64 +150,73 @@ impl Study for DriftStudy {
     }
 }
 
-struct Job<'a> {
+/// A long run of one scene, and the true account at each of its observations.
+struct Track<'a> {
     scene: &'a dyn AnyScene,
-    method: MethodId,
-    precision: Precision,
-    quick: bool,
+    h_s: f64,
+    steps: u64,
+    /// Steps from one observation to the next.
+    stride: u64,
+    /// One account, if all of it is conserved; else one for each observation.
+    truth: Vec<Vec<Entry>>,
+    kinds: Vec<Drift>,
 }
 
-impl Job<'_> {
-    fn rows(&self) -> Vec<Row> {
-        let scales = if self.quick { QUICK_TIME_SCALES } else { TIME_SCALES };
+impl<'a> Track<'a> {
+    fn of(scene: &'a dyn AnyScene, time_scales: f64) -> Self {
         // Dyadic, so that every precision takes the same step.
-        let h_s = (self.scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
-        let steps = scales as u64 * STEPS_A_TIME_SCALE;
-        let run = Run::new(self.method, self.precision, h_s * steps as f64, steps);
-        let trajectory = self.scene.run(&run, (steps / STRETCHES / OBSERVATIONS).max(1));
-        let start = self.scene.exact(fx128::ZERO);
-        let account = |t_s: f64, seen: &Observation| self.scene.scene().account(fx128::lit(t_s), seen);
-        let reference = account(0.0, &start);
-        let errors = |step: u64, seen: &Observation| {
-            let t_s = step as f64 * h_s;
-            let truth = if reference.iter().all(|entry| entry.conserved) {
-                reference.clone()
-            } else {
-                account(t_s, &self.scene.exact(fx128::lit(t_s)))
-            };
-            let mut errors = drifts(&account(t_s, seen), &truth);
-            if seen.rotation().is_some() {
-                errors.push((Drift::QuaternionNorm, seen.norm_error));
-            }
-            errors
+        let h_s = (scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
+        let steps = time_scales as u64 * STEPS_A_TIME_SCALE;
+        let stride = (steps / STRETCHES / OBSERVATIONS).max(1);
+        let start = scene.exact(fx128::ZERO);
+        let first = scene.scene().account(fx128::ZERO, &start);
+        let at = |step: u64| {
+            let t = fx128::lit(step as f64 * h_s);
+            scene.scene().account(t, &scene.exact(t))
         };
+        let conserved = first.iter().all(|entry| entry.conserved);
+        let norm = start.rotation().map(|_| Drift::QuaternionNorm);
+        let kinds = drifts(&first, &first).into_iter().map(|(drift, _)| drift).chain(norm).collect();
+        let truth = if conserved { vec![first] } else { (0..=steps / stride).map(|k| at(k * stride)).collect() };
+        Track { scene, h_s, steps, stride, truth, kinds }
+    }
+
+    fn errors(&self, step: u64, seen: &Observation) -> Vec<(Drift, f64)> {
+        let account = self.scene.scene().account(fx128::lit(step as f64 * self.h_s), seen);
+        let truth = if self.truth.len() == 1 { &self.truth[0] } else { &self.truth[(step / self.stride) as usize] };
+        let mut errors = drifts(&account, truth);
+        if seen.rotation().is_some() {
+            errors.push((Drift::QuaternionNorm, seen.norm_error));
+        }
+        errors
+    }
+
+    fn rows(&self, method: MethodId, precision: Precision) -> Vec<Row> {
+        let run = Run::new(method, precision, self.h_s * self.steps as f64, self.steps);
+        let trajectory = self.scene.run(&run, self.stride);
+        let seen = trajectory.seen.iter().skip(1);
         let measured: Vec<(u64, Vec<(Drift, f64)>)> =
-            trajectory.seen.iter().skip(1).map(|(step, seen)| (*step, errors(*step, seen))).collect();
-        let failed_at_s = trajectory.failed_step.map(|step| step as f64 * h_s);
-        let kinds: Vec<Drift> = drifts(&reference, &reference)
-            .into_iter()
-            .map(|(drift, _)| drift)
-            .chain(start.rotation().map(|_| Drift::QuaternionNorm))
-            .collect();
+            seen.map(|(step, seen)| (*step, self.errors(*step, seen))).collect();
+        let failed_at_s = trajectory.failed_step.map(|step| step as f64 * self.h_s);
         let mut rows = Vec::new();
-        for drift in kinds {
-            let theory = self.theory(drift, h_s);
+        for (i, &drift) in self.kinds.iter().enumerate() {
+            let theory = self.theory(method, drift);
             for stretch in 0..STRETCHES {
-                let ends = steps * stretch / STRETCHES..=steps * (stretch + 1) / STRETCHES;
-                let inside = measured.iter().filter(|(step, _)| ends.contains(step) && step != ends.start());
-                let values: Vec<f64> =
-                    inside.flat_map(|(_, e)| e.iter().filter(|(d, _)| *d == drift).map(|(_, x)| *x)).collect();
-                let complete = failed_at_s.is_none_or(|t| t > *ends.end() as f64 * h_s) && !values.is_empty();
-                let fold = |f: fn(f64, f64) -> f64| complete.then(|| values.iter().copied().fold(values[0], f));
+                let [begin, end] = [stretch, stretch + 1].map(|k| self.steps * k / STRETCHES);
+                let inside = measured.partition_point(|(step, _)| *step <= begin)
+                    ..measured.partition_point(|(step, _)| *step <= end);
+                let values = measured[inside].iter().map(|(_, errors)| errors[i].1);
+                let complete = failed_at_s.is_none_or(|t| t > end as f64 * self.h_s);
+                let fold = |f: fn(f64, f64) -> f64| values.clone().reduce(f).filter(|_| complete);
                 rows.push(Row {
                     scene: self.scene.id().to_owned(),
-                    method: self.method.id().to_owned(),
-                    precision: self.precision,
-                    h_s,
+                    method: method.id().to_owned(),
+                    precision,
+                    h_s: self.h_s,
                     drift,
                     unit: drift.unit().to_owned(),
-                    scale: scale(&reference, drift),
-                    t_s: *ends.end() as f64 * h_s,
+                    scale: scale(&self.truth[0], drift),
+                    t_s: end as f64 * self.h_s,
                     error_min: fold(f64::min),
                     error_max: fold(f64::max),
                     outcome: trajectory.outcome,
@@ -214,14 +230,14 @@ impl Job<'_> {
         rows
     }
 
-    fn theory(&self, drift: Drift, h_s: f64) -> Option<crate::scene::ExpectedGrowth> {
+    fn theory(&self, method: MethodId, drift: Drift) -> Option<ExpectedGrowth> {
         let balance = match drift {
             Drift::Energy => Balance::Energy,
             Drift::MomentumNorm => Balance::Momentum,
             Drift::AngularMomentumNorm => Balance::AngularMomentum,
             _ => return None,
         };
-        self.scene.scene().growth(self.method, balance, h_s)
+        self.scene.scene().growth(method, balance, self.h_s)
     }
 }
 
