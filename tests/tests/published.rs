@@ -24,8 +24,8 @@ struct Published {
 
 /// The one row of that id and scene.
 fn published(id: &str, scene: &str) -> Published {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("data/published.csv");
-    let mut reader = csv::Reader::from_path(&path).expect("tests/data/published.csv");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studies/data/published.csv");
+    let mut reader = csv::Reader::from_path(&path).expect("studies/data/published.csv");
     let rows = reader.deserialize().map(|row| row.expect("a well-formed row"));
     let mut of_id = rows.filter(|row: &Published| row.id == id && row.scene == scene);
     let row = of_id.next().expect("the row is there");
