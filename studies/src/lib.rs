@@ -8,6 +8,7 @@
 
 #[macro_use]
 pub mod run;
+pub mod adequacy;
 pub mod cli;
 pub mod convergence;
 pub mod drift;
@@ -15,6 +16,7 @@ pub mod error;
 pub mod fit;
 pub mod growth;
 pub mod observation;
+pub mod operations;
 pub mod order;
 pub mod produce;
 mod provenance;

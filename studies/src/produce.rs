@@ -2,6 +2,7 @@
 
 use reports::{Block, Claim, OutputDir, Page, Section, Table};
 
+use crate::adequacy::Adequacy;
 use crate::cli::Common;
 use crate::convergence::Convergence;
 use crate::drift::DriftStudy;
@@ -22,7 +23,12 @@ pub struct Product {
 
 /// Every study of the report, in its order.
 pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
-    Ok(vec![of::<Convergence>(selection)?, of::<DriftStudy>(selection)?, of::<Rotation>(selection)?])
+    Ok(vec![
+        of::<Convergence>(selection)?,
+        of::<DriftStudy>(selection)?,
+        of::<Rotation>(selection)?,
+        of::<Adequacy>(selection)?,
+    ])
 }
 
 /// Runs one study and makes all that follows from its rows.
