@@ -105,7 +105,7 @@ fn irreversible_methods_miss_the_start_by_what_theory_says() {
 fn on_the_pendulum_irreversible_methods_come_back_with_an_error_of_their_order() {
     // RK4 misses by h^5: its h^4 error is that of a reversible flow, |R|^2 - 1 = -z^6 / 72 a step.
     for (method, order) in [(MethodId::ExplicitEuler, 1.0), (MethodId::ImplicitEuler, 1.0), (MethodId::Rk4, 5.0)] {
-        let at = |k: u32| distance::<fx128>(method, true, H / 16.0 / f64::from(1 << k), STEPS * 4 << k);
+        let at = |k: u32| distance::<fx128>(method, true, H / 16.0 / f64::from(1 << k), (STEPS * 4) << k);
         let observed = (at(0) / at(1)).log2();
         println!("{}: {observed:.4}", method.id());
         // First-order corrections in h T w: 8 % of an order at most at h = 1/1024, T = 2.
