@@ -178,6 +178,13 @@ pub enum Block {
     },
     /// Claims with their verdicts.
     Claims(Vec<Claim>),
+    /// Files beside the page: what each is, and its name.
+    Links {
+        /// What the files are.
+        caption: String,
+        /// Text and file name of each.
+        files: Vec<(String, String)>,
+    },
     /// A figure with its drawing, as [`crate::plot::svg`] gives it.
     Figure {
         /// The figure: id, caption, command, data.
@@ -208,6 +215,12 @@ impl Block {
                 @if let Some(csv) = csv { p.source { "Data: " a href=(csv) { (csv) } } }
             },
             Self::Claims(claims) => scroll("Claims", &claims_table(claims)),
+            Self::Links { caption, files } => html! {
+                details {
+                    summary { (caption) " (" (files.len()) ")" }
+                    ul { @for (text, file) in files { li { a href=(file) { (text) } } } }
+                }
+            },
             Self::Figure { figure, svg } => html! {
                 figure id={ "figure-" (figure.id) } {
                     (scroll(&figure.title, &PreEscaped(svg.clone())))

@@ -1,6 +1,6 @@
 //! From a plan to files: rows, tables, figures, claims, one page. Nothing is written before everything is known.
 
-use reports::{Block, Claim, OutputDir, Page, Section, Table};
+use reports::{Block, Claim, Finding, OutputDir, Page, Section, Table};
 
 use crate::adequacy::Adequacy;
 use crate::cli::Common;
@@ -51,11 +51,18 @@ pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
     let claims = S::claims(rows);
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?));
-    let mut blocks = Vec::new();
+    let (mut blocks, mut linked) = (Vec::new(), Vec::new());
     for figure in S::figures(rows) {
         let svg = reports::svg(&figure)?;
         files.push((format!("{}.svg", figure.id), svg.clone()));
-        blocks.push(Block::Figure { figure, svg });
+        if S::is_on_page(&figure) {
+            blocks.push(Block::Figure { figure, svg });
+        } else {
+            linked.push((figure.title, format!("{}.svg", figure.id)));
+        }
+    }
+    if !linked.is_empty() {
+        blocks.push(Block::Links { caption: "More charts".to_owned(), files: linked });
     }
     blocks.push(Block::Claims(claims.clone()));
     for Derived { name, caption, csv, table } in S::tables(rows)? {
@@ -96,7 +103,7 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
         title: "How accurate is a fixed step?".to_owned(),
         lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
             .to_owned(),
-        findings: Vec::new(),
+        findings: findings(&claims, &files),
         sections,
         footer: provenance::lines(common),
     };
@@ -104,6 +111,50 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
     files.push(("index.html".to_owned(), page.html()?));
     write(&out, &files)?;
     Ok(claims)
+}
+
+/// What a busy reader should take away: a title, the claim that carries it, and the chart that shows it.
+const FINDINGS: [(&str, &str, &str); 6] = [
+    ("Explicit Euler gains energy at every step", "drift.oscillator.explicit-euler.energy", "drift-oscillator-energy"),
+    (
+        "Semi-implicit Euler keeps it in a band, for ever",
+        "drift.oscillator.semi-implicit-euler.energy",
+        "drift-oscillator-energy",
+    ),
+    (
+        "A force that depends on the velocity takes that advantage away",
+        "drift.charged-particle/magnetic.semi-implicit-euler.energy",
+        "drift-charged-particle-magnetic-energy",
+    ),
+    (
+        "RK4 is worth its four evaluations where the motion is smooth",
+        "convergence.torque-free-spin.rk4.order",
+        "precision-torque-free-spin-attitude",
+    ),
+    (
+        "Without the gyroscopic term no step is small enough",
+        "rotation.semi-implicit-euler/without-gyroscopic-term.order-0",
+        "rotation-error-torque-free-spin",
+    ),
+    (
+        "A spinning body is not a spring: semi-implicit Euler gains energy",
+        "rotation.step-law.energy.asymmetric-body.semi-implicit-euler/body-omega",
+        "rotation-axis-start-near-most-inertia",
+    ),
+];
+
+/// The findings whose claim was made; a claim that broke is told as broken.
+fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
+    let finding = |&(title, id, figure): &(&str, &str, &str)| {
+        let claim = claims.iter().find(|claim| claim.id == id || claim.id.starts_with(&format!("{id}.")))?;
+        let drawn = files.iter().any(|(name, _)| name.strip_suffix(".svg") == Some(figure));
+        Some(Finding {
+            title: title.to_owned(),
+            text: format!("{}: {} (theory: {}) – {}.", claim.statement, claim.measured, claim.theory, claim.verdict),
+            figure: drawn.then(|| figure.to_owned()),
+        })
+    };
+    FINDINGS.iter().filter_map(finding).collect()
 }
 
 fn write(out: &OutputDir, files: &[(String, String)]) -> Result<(), Error> {

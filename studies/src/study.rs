@@ -50,6 +50,12 @@ pub trait Study {
     /// Charts of the rows.
     fn figures(rows: &[Self::Row]) -> Vec<Figure>;
 
+    /// Whether a figure stands on the page itself; the others are files that the page links to.
+    fn is_on_page(figure: &Figure) -> bool {
+        let _ = figure;
+        true
+    }
+
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
 }

@@ -145,6 +145,9 @@ impl Study for DriftStudy {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         show::figures(rows)
     }
+    fn is_on_page(figure: &Figure) -> bool {
+        figure.id.ends_with("-energy")
+    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         laws::claims(rows)
     }
