@@ -309,9 +309,9 @@ fn evaluations_per_step_are_as_stated() {
     println!("{:?} {:?} {:?}", counts::<f32>(), counts::<f64>(), counts::<fx128>());
     assert_eq!(&counts::<f64>()[..4], [1, 1, 2, 4]);
     assert_eq!(&counts::<fx128>()[..4], [1, 1, 2, 4]);
-    // The guess 1, the Jacobian 2 for the line's position and velocity, and one for each iteration.
-    // The last iteration finds nothing left to correct: the third, or the fourth where rounding leaves an eps to it.
-    assert_eq!(&counts::<f32>()[4..], [6, 6]);
-    assert_eq!(&counts::<f64>()[4..], [6, 7]);
-    assert_eq!(&counts::<fx128>()[4..], [6, 6]);
+    // At h w = 3/4: the guess 1, two iterations with the identity, two Jacobians of 2 (position and velocity), and an iteration each,
+    // the last of which finds nothing left to correct: 10, or one more where rounding leaves an eps to it.
+    assert_eq!(&counts::<f32>()[4..], [10, 10]);
+    assert_eq!(&counts::<f64>()[4..], [10, 11]);
+    assert_eq!(&counts::<fx128>()[4..], [10, 10]);
 }
