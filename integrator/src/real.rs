@@ -101,7 +101,7 @@ pub(crate) fn taylor_cos_sinc<T: Real, const SKIP: usize>(x_squared: T) -> (T, T
 
 /// The same for larger x: k times halved, summed and doubled back by cos 2x = 1 - 2 x^2 sinc(x)^2, sinc 2x = sinc x cos x.
 ///
-/// The error is that of the angle, about |x| EPSILON. Arithmetic alone, without a call to a library: the compiler can see
+/// The error is that of the angle, about 2 |x| EPSILON. Arithmetic alone, without a call to a library: the compiler can see
 /// that it has no effect, and drops it with an attitude that nobody asks for.
 #[cold]
 #[inline(never)]
