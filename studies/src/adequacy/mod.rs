@@ -5,6 +5,7 @@ mod show;
 
 use faer::fx128;
 use integrator::Real;
+use integrator::methods::MethodId;
 use reports::{Claim, Figure, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +60,8 @@ impl Study for Adequacy {
         no order of convergence: it is named as such.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
-        let chosen = |ladder: &Ladder| selection.scenes.iter().any(|scene| scene.id() == base(ladder.name));
+        let chosen =
+            |ladder: &Ladder| selection.scenes.iter().any(|scene| without_preset(scene.id()) == base(ladder.name));
         let ladders: Vec<Ladder> = ladders::all().into_iter().filter(chosen).collect();
         let halvings = if selection.quick { HALVINGS - 2 } else { HALVINGS };
         in_parallel(&ladders, |_| 1, &selection.progress, |ladder| climb(ladder, halvings)).concat()
@@ -71,7 +73,7 @@ impl Study for Adequacy {
         show::figures(rows)
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
-        rungs(rows).iter().map(claim).collect()
+        rungs(rows).iter().filter_map(claim).collect()
     }
 }
 
@@ -81,6 +83,10 @@ fn base(ladder: &str) -> &str {
         "pendulum-1-mrad" => "pendulum",
         name => name.split(' ').next().unwrap_or(name),
     }
+}
+
+fn without_preset(id: &str) -> &str {
+    id.split('/').next().unwrap_or(id)
 }
 
 fn climb(ladder: &Ladder, halvings: u32) -> Vec<Row> {
@@ -115,7 +121,7 @@ fn climb(ladder: &Ladder, halvings: u32) -> Vec<Row> {
     rows
 }
 
-fn operations(rung: &Rung, method: integrator::methods::MethodId) -> u64 {
+fn operations(rung: &Rung, method: MethodId) -> u64 {
     (rung.operations)(method).unwrap_or(0)
 }
 
@@ -180,9 +186,13 @@ fn seen(sweep: &[&Row]) -> Seen {
     }
 }
 
-/// An inconsistent model: the last halving changes the error by a term of order h at most, which the ten halvings before have
-/// made a thousandth. A consistent one: its error falls, or is rounding.
-fn claim(seen: &Seen) -> Claim {
+/// A consistent model: its error falls, or is rounding. An inconsistent one: the last halving does not change the error. That is
+/// seen with RK4, whose own error is far below that of the model; where a model is nearly right, as a small angle is for a small
+/// swing, the error of a method of order 1 still covers it.
+fn claim(seen: &Seen) -> Option<Claim> {
+    if !seen.consistent && seen.method != MethodId::Rk4.id() {
+        return None;
+    }
     let id = format!("adequacy.{}.{}.{}", seen.scene, seen.model, seen.method).replace(' ', "-");
     let (statement, theory, bound, holds) = if seen.consistent {
         let holds = seen.finest.is_some_and(|e| e <= FLOOR) || seen.order.is_some_and(|p| p >= LEAST_ORDER);
@@ -196,7 +206,7 @@ fn claim(seen: &Seen) -> Claim {
             holds,
         )
     };
-    Claim {
+    Some(Claim {
         id,
         study: "adequacy".to_owned(),
         statement: format!("'{}' with {} on {} {statement}", seen.model, seen.method, seen.scene),
@@ -204,10 +214,10 @@ fn claim(seen: &Seen) -> Claim {
         measured: format!("order {}, error {} {} at the finest step", short(seen.order), short(seen.finest), seen.unit),
         bound,
         verdict: Verdict::from_comparison(holds),
-    }
+    })
 }
 
 /// Order 1, less what the next term of the error takes at the finest step.
 const LEAST_ORDER: f64 = 0.95;
-/// Order 0, and what the error of the method adds at the finest step.
-const LARGEST_ORDER: f64 = 0.05;
+/// Order 0, and what RK4's own error adds at the finest step: less than a thousandth of the model's.
+const LARGEST_ORDER: f64 = 0.001;

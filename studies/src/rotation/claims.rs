@@ -22,6 +22,7 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     claims.extend(disc_claims(rows));
     claims.extend(destination_claims(rows));
     claims.extend(drift_claims(rows));
+    claims.extend(law_claims(rows));
     claims.extend(same_motion_claims(rows));
     claims.extend(published_claims(rows));
     claims
@@ -255,6 +256,28 @@ fn drift_claims(rows: &[Row]) -> Vec<Claim> {
         }
     }
     claims
+}
+
+/// A scheme whose step changes T by a term of h^2 that has one sign loses or gains linearly.
+fn law_claims(rows: &[Row]) -> Vec<Claim> {
+    let of = by_scheme(rows, Experiment::Drift);
+    of.into_iter()
+        .filter(|(scheme, _)| super::laws::energy_changes_with_one_sign(*scheme))
+        .filter_map(|(scheme, rows)| {
+            let (seen, largest) = law(&rows, "T / T0 - 1")?;
+            Some(claim(
+                format!("growth.energy.{}", scheme.id()),
+                format!(
+                    "the energy error of {} grows linearly: every step changes T by h^2 / 2 v . J v or less",
+                    scheme.id()
+                ),
+                Law::Linear.to_string(),
+                format!("{seen}, largest relative error {largest:.2e}"),
+                "the same law".to_owned(),
+                seen == Law::Linear,
+            ))
+        })
+        .collect()
 }
 
 fn wrong(scheme: Scheme) -> &'static str {

@@ -67,6 +67,16 @@ pub fn step_law(scheme: Scheme, at: &Free) -> Option<StepLaw> {
     }
 }
 
+/// Whether the leading change of T in a step is a multiple of v . J v, which is positive unless the body spins about an axis.
+pub fn energy_changes_with_one_sign(scheme: Scheme) -> bool {
+    use MethodId::{ExplicitEuler, SemiImplicitEuler};
+    match scheme.rule {
+        Rule::General(ExplicitEuler | SemiImplicitEuler) => !scheme.lacks_gyroscopic_term(),
+        Rule::Rigid(step) => step == RigidStep::ImplicitGyroscopic,
+        Rule::General(_) => false,
+    }
+}
+
 /// The step of an exact law, and of a leading one, s.
 const EXACT_STEP_S: f64 = 1.0 / 64.0;
 const LEADING_STEP_S: f64 = 1.0 / 1_048_576.0;
