@@ -28,7 +28,7 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: String, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
+fn claim(id: &str, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
     let verdict = Verdict::from_comparison(holds);
     Claim { id: format!("rotation.{id}"), study: "rotation".to_owned(), statement, theory, measured, bound, verdict }
 }
@@ -69,7 +69,7 @@ fn order_claims(rows: &[Row]) -> Vec<Claim> {
                 None => format!("{} error {}", s.subject, short(s.finest)),
             });
             claims.push(claim(
-                format!("{id}.{name}"),
+                &format!("{id}.{name}"),
                 match expected {
                     Some(0.0) => {
                         format!("{id} is inconsistent on {} scenes: its error does not fall with the step", seen.len())
@@ -115,7 +115,7 @@ fn nutation_claims(rows: &[Row]) -> Vec<Claim> {
             let off = of.iter().map(|r| r.value.zip(r.theory).map_or(f64::INFINITY, |(a, b)| (a / b - 1.0).abs()));
             let largest = off.fold(0.0, f64::max);
             claims.push(claim(
-                format!("nutation.{subject}.{}", scheme.id()),
+                &format!("nutation.{subject}.{}", scheme.id()),
                 format!("{} multiplies the nutation of a {subject} in a step by the factor of theory", scheme.id()),
                 list(|row| row.theory),
                 format!("{} (largest relative difference {largest:.1e})", list(|row| row.value)),
@@ -148,7 +148,7 @@ fn disc_claims(rows: &[Row]) -> Vec<Claim> {
                 _ => growth > 1e-9,
             };
             Some(claim(
-                format!("disc.{}", scheme.id()),
+                &format!("disc.{}", scheme.id()),
                 format!("a disc at 60 rad/s with h = 1/60 s fares under {} as the nutation factor says", scheme.id()),
                 format!("factor {factor:.6} a step"),
                 fate.words(),
@@ -201,7 +201,7 @@ fn destination_claims(rows: &[Row]) -> Vec<Claim> {
                 Goal::Stays => ("stays where it is", (last - first).abs() <= 1e-3),
             };
             Some(claim(
-                format!("destination.{}.{scheme}", start.replace(' ', "-")),
+                &format!("destination.{}.{scheme}", start.replace(' ', "-")),
                 format!("a body ({start}) under {scheme} {theory}"),
                 theory.to_owned(),
                 format!("axis coordinate {first:.4} at the start, {last:.4} at the end (0 most, 1 least inertia)"),
@@ -246,7 +246,7 @@ fn drift_claims(rows: &[Row]) -> Vec<Claim> {
             // A few roundings of a few units a step, all with one sign at worst.
             let bound = 8.0 * f64::EPSILON * (last.t_s / last.h_s);
             claims.push(claim(
-                format!("conserves.{what}.{}", scheme.id()),
+                &format!("conserves.{what}.{}", scheme.id()),
                 format!("{} keeps {what} on a free body to rounding{}", scheme.id(), wrong(scheme)),
                 "conserved".to_owned(),
                 format!("largest relative change {largest:.2e}"),
@@ -266,7 +266,7 @@ fn law_claims(rows: &[Row]) -> Vec<Claim> {
         .filter_map(|(scheme, rows)| {
             let (seen, largest) = law(&rows, "T / T0 - 1")?;
             Some(claim(
-                format!("growth.energy.{}", scheme.id()),
+                &format!("growth.energy.{}", scheme.id()),
                 format!(
                     "the energy error of {} grows linearly: every step changes T by h^2 / 2 v . J v or less",
                     scheme.id()
@@ -308,7 +308,7 @@ fn same_motion_claims(rows: &[Row]) -> Vec<Claim> {
             // Where the body spins about one axis, the world frame and the body frame are one for explicit Euler too.
             (same || row.subject != "principal-axis-torque").then(|| {
                 claim(
-                    format!("same-motion.{}.{method}", row.subject),
+                    &format!("same-motion.{}.{method}", row.subject),
                     format!("{method} with world omega and with body omega {statement} on {}", row.subject),
                     statement.to_owned(),
                     format!("{value:.2e} apart at most"),
@@ -332,7 +332,7 @@ fn published_claims(rows: &[Row]) -> Vec<Claim> {
             let of: Vec<&&Row> = rows.iter().filter(|row| row.subject == subject && row.scheme == scheme).collect();
             let right = of.iter().filter(|row| row.agrees() == Some(true)).count();
             claim(
-                format!("published.{subject}.{scheme}"),
+                &format!("published.{subject}.{scheme}"),
                 format!("the numbers printed by {subject} for {scheme} are reproduced to their last digit"),
                 format!("{} of {}", of.len(), of.len()),
                 format!("{right} of {}", of.len()),

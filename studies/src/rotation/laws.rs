@@ -212,6 +212,5 @@ fn spectral_radius(m: Matrix2<f64>) -> f64 {
 
 /// The body on which the laws are measured: unequal unsorted moments, no component zero.
 pub fn generic_body() -> TorqueFreeSpin {
-    let body = TorqueFreeSpin::default();
-    body
+    TorqueFreeSpin::default()
 }

@@ -148,9 +148,9 @@ impl Fate {
 const STRETCHES: u64 = 128;
 
 /// Drift of T, |L| and the direction of L on the generic body: first-order schemes lose a few per cent at the end.
-pub fn drift(body: &TorqueFreeSpin, schemes: &[Scheme], quick: bool) -> Vec<Row> {
-    let end_s = if quick { 8.0 } else { 32.0 };
-    schemes.iter().flat_map(|&scheme| drift_of(body, scheme, end_s)).collect()
+pub fn drift(body: &TorqueFreeSpin, schemes: &[Scheme]) -> Vec<Row> {
+    // Some ten periods of the body: a law of growth is not seen in two.
+    schemes.iter().flat_map(|&scheme| drift_of(body, scheme, 32.0)).collect()
 }
 
 fn drift_of(body: &TorqueFreeSpin, scheme: Scheme, end_s: f64) -> Vec<Row> {

@@ -65,10 +65,12 @@ fn asked_for(selection: &Selection, scheme: Scheme) -> bool {
     }
 }
 
+/// End of the long runs, s: they are cheap, and where a body ends up is not seen in shorter ones.
+const LONG_S: f64 = 400.0;
+
 /// One step, one minute and one long run of free bodies: which scene was chosen does not matter.
 fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
     let body = laws::generic_body();
-    let long_s = if selection.quick { 40.0 } else { 400.0 };
     let jobs: Vec<Scheme> = schemes.to_vec();
     let cost = |scheme: &Scheme| if scheme.is_implicit() { 50 } else { 1 };
     in_parallel(&jobs, cost, &selection.progress, |&scheme| {
@@ -82,9 +84,9 @@ fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
         rows.extend(long::disc_runs(&one));
         for (name, start) in long::long_starts() {
             // An implicit step costs fifty explicit ones, and its long run shows nothing but that nothing happens.
-            rows.extend(long::long_run(name, &start, if scheme.is_implicit() { long_s / 10.0 } else { long_s }, &one));
+            rows.extend(long::long_run(name, &start, if scheme.is_implicit() { LONG_S / 10.0 } else { LONG_S }, &one));
         }
-        rows.extend(long::drift(&body, &one, selection.quick));
+        rows.extend(long::drift(&body, &one));
         rows
     })
     .concat()
