@@ -12,9 +12,12 @@ use super::displaced::{Stepping, coordinates, dimension};
 use crate::run::Precision;
 use crate::scene::StabilityLimit;
 
-/// A double eigenvalue on the unit circle (position under no force; h omega = 2) moves by the root of the rounding errors of
-/// the matrix, sqrt(2e-16 |M|) < 1e-7: a spectral radius up to this much above 1 is 1.
-pub const DEFECTIVE: f64 = 1e-7;
+/// Eigenvalues this near to 1 are positions under no force: a double one moves by the root of the rounding errors of the
+/// matrix, sqrt(2e-16 |M|) < 1e-6, and grows no faster than a power of time.
+pub const NEUTRAL: f64 = 1e-6;
+/// A spectral radius of the other eigenvalues up to this much above 1 is 1. At the limit itself they may be double too
+/// (h omega = 2); that moves the limit by the square of the eigenvalue's error only.
+pub const ROUNDING: f64 = 1e-12;
 /// How far a step may miss superposition, in parts of the sizes involved, in double-double with Newton's rounding.
 const SUPERPOSITION: f64 = 1e-20;
 /// Rungs of the ladder on which theory's limit is looked for, in natural time scales: fine enough that no known interval of
@@ -99,7 +102,9 @@ impl Amplification {
             let slack = 8.0 * f64::EPSILON * (1.0 + a.abs() + d.abs() + (a * d).abs() + (b * c).abs());
             return (trace + det).is_finite().then(|| det.abs() <= 1.0 + slack && trace.abs() <= 1.0 + det + slack);
         }
-        Some(self.spectral_radius()? <= 1.0 + DEFECTIVE)
+        let values = self.eigenvalues()?;
+        let not_neutral = values.iter().filter(|l| (l.re - 1.0).hypot(l.im) > NEUTRAL);
+        Some(not_neutral.map(|l| l.re.hypot(l.im)).fold(0.0, f64::max) <= 1.0 + ROUNDING)
     }
 
     fn faer(&self) -> Mat<f64> {

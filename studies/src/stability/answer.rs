@@ -65,9 +65,10 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
         let _ = writeln!(answer.text, "{text}");
     };
     line(format!("{} with {} in {}", stepping.scene.id(), stepping.method.title(), stepping.precision.id()));
-    let theory = amplification::limit(stepping).and_then(limits::number);
-    let found = match theory {
-        Some(_) => limits::measure(stepping),
+    let linear = amplification::limit(stepping);
+    let theory = linear.and_then(limits::number);
+    let found = match linear {
+        Some(limit) => limits::measure(stepping, limit),
         None => measure_nonlinear(stepping.scene, stepping),
     };
     match theory {

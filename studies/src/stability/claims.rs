@@ -6,7 +6,7 @@ use super::bisect::WIDTH;
 use super::failure::Failure;
 use super::maps::{self, Grid, boundary_distance};
 use super::models::Scheme;
-use super::spin::{FACTOR_TOLERANCE, SpinScheme};
+use super::spin::{FACTOR_TOLERANCE, STEPS, SpinScheme};
 use super::tables::limit_words;
 use super::{Part, Row};
 use crate::run::Precision;
@@ -190,14 +190,18 @@ fn spin_maps(rows: &[Row]) -> Vec<Claim> {
         .filter_map(|scheme| {
             let cells = rows.iter().filter(|row| row.part == Part::SpinMap && row.method == scheme.id());
             let worst = cells
-                .filter_map(|row| Some((row.measured? / row.theory? - 1.0).abs()))
+                .filter_map(|row| {
+                    // Measured is a nutation after several steps; one that has died out is lost in rounding.
+                    let [measured, theory] = [row.measured?, row.theory?].map(|factor| factor.powi(STEPS));
+                    Some((measured - theory).abs() / theory.max(1.0) / f64::from(STEPS))
+                })
                 // NaN is the worst.
                 .reduce(|a, b| if b.is_nan() || b > a { b } else { a })?;
             Some(claim(
                 format!("map.spin.{}", scheme.id()),
                 format!("nutation factor in one step: {}", scheme.title()),
                 "the factor of the linearised spin".to_owned(),
-                format!("largest relative difference {worst:.1e}"),
+                format!("largest difference {worst:.1e}"),
                 format!("at most {FACTOR_TOLERANCE:.0e} in every cell"),
                 worst <= FACTOR_TOLERANCE,
             ))
@@ -211,7 +215,7 @@ fn regions(rows: &[Row]) -> Vec<Claim> {
         .into_iter()
         .map(|method| {
             let worst = cells()
-                .filter(|row| row.method == method)
+                .filter(|row| row.method == method && row.theory.is_some_and(|r| r < POLE))
                 .filter_map(|row| Some((row.measured? - row.theory?).abs() / row.theory?.max(1.0)))
                 .fold(0.0_f64, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
             claim(
@@ -228,6 +232,9 @@ fn regions(rows: &[Row]) -> Vec<Claim> {
 
 /// A step of at most 4 stages, or one linear system, near a pole: a few hundred roundings.
 const REGION_TOLERANCE: f64 = 1e-12;
+
+/// At a pole of R there is nothing to compare.
+const POLE: f64 = 1e6;
 
 /// The failure that each picture has to show.
 const SHOWN: [(&str, Failure); 9] = [

@@ -106,7 +106,7 @@ impl Failure {
         if cosines.iter().any(|c| !c.is_finite()) {
             return Failure::FiniteTimeBlowUp;
         }
-        if cosines.last().is_some_and(|c| *c < 0.0) { Failure::FlippedAxis } else { Failure::None }
+        if cosines.iter().any(|c| *c < 0.0) { Failure::FlippedAxis } else { Failure::None }
     }
 
     /// The kind of failure of a quantity that should be kept, from (time, relative error).

@@ -7,6 +7,12 @@ const LOOKS: u64 = 64;
 /// A window whose largest size exceeds that of the one before by less than this does not grow: the largest of 64 looks at an
 /// oscillating size repeats to a few per cent.
 const STEADY: f64 = 1.1;
+/// A window that falls below the one before by this factor decays.
+const FALLING: f64 = 0.9;
+/// Steps of a run in which growth by 1e-6 a step shows.
+pub const PATIENCE: u64 = 1 << 14;
+/// A factor from window to window that no linear drift has.
+const MORE_THAN_LINEAR: f64 = 2.5;
 /// Growth by this factor within one window is exponential already: a power t^p would need p > 23.
 const HUGE: f64 = 1e7;
 /// A size that has fallen to this part of its start is decaying, whatever it does in between.
@@ -41,6 +47,7 @@ pub fn looks(log2_steps: u32) -> Vec<u64> {
 /// In windows of doubling length the largest size of exponential growth rises by a factor that squares itself from window to
 /// window, that of a power stays the same, that of a bounded size tends to one.
 pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
+    let length = sizes.last().map_or(0, |(step, _)| *step);
     let start = sizes.first().map_or(0.0, |(_, size)| *size);
     // What has gone stays gone; further on the numbers would underflow.
     if sizes.iter().any(|(_, size)| *size <= GONE * start) {
@@ -55,16 +62,15 @@ pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
     if now > HUGE {
         return Some(Trend::Exponential);
     }
-    if now <= STEADY {
-        return (now <= 1.0 + 0.2 * (STEADY - 1.0)).then_some(Trend::Bounded);
+    if now <= 1.0 + 0.2 * (STEADY - 1.0) {
+        // Standing still proves something only where slow growth would have shown itself.
+        return (now <= FALLING || length >= PATIENCE).then_some(Trend::Bounded);
     }
-    let squaring = now.ln() / earlier.ln();
-    match squaring {
-        // It decayed or stood still before: what grows now has come up from below.
-        r if earlier <= 1.0 || r > 1.5 => (now > 1.5).then_some(Trend::Exponential),
-        r if r < 1.2 => Some(Trend::Power),
-        _ => None,
+    if earlier > 1.0 && now.ln() < 1.2 * earlier.ln() {
+        return Some(Trend::Power);
     }
+    // A drift that comes up from below a constant has factors that rise to 2: only beyond is it more than that.
+    (now > MORE_THAN_LINEAR).then_some(Trend::Exponential)
 }
 
 fn window_maxima(sizes: &[(u64, f64)]) -> Vec<f64> {

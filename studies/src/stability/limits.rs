@@ -14,11 +14,11 @@ use crate::run::Precision;
 use crate::scene::StabilityLimit;
 
 /// Steps tried, in natural time scales of the scene.
-pub const TRIED: [f64; 2] = [1.0 / 32.0, 1024.0];
+pub const TRIED: [f64; 2] = [1.0 / 8.0, 1024.0];
 /// Lengths of the runs that a verdict is sought from, as powers of two; the last one decides.
-const LENGTHS: [u32; 4] = [10, 13, 16, 20];
+const LENGTHS: [u32; 3] = [10, 16, 20];
 /// The same for implicit methods, whose steps cost a hundred times as much and whose verdicts are not near a limit.
-const IMPLICIT_LENGTHS: [u32; 2] = [8, 11];
+const IMPLICIT_LENGTHS: [u32; 1] = [8];
 
 /// One job: a scene, a method and a precision.
 pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
@@ -30,16 +30,20 @@ pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
     rows
 }
 
-/// The measured bracket of the largest stable step.
-pub fn measure(stepping: &Stepping<'_>) -> Found {
+/// The measured bracket of the largest stable step. Theory says only from how far below its limit the search starts.
+pub fn measure(stepping: &Stepping<'_>, theory: StabilityLimit) -> Found {
     let scale = stepping.scene.scene().info().time_scale_s;
-    bracket(TRIED[0] * scale, TRIED[1] * scale, WIDTH, |h| holds(stepping, h))
+    let from = match theory {
+        StabilityLimit::Below(h) => (h / 8.0).min(TRIED[0] * scale),
+        StabilityLimit::NoStep | StabilityLimit::Unlimited => TRIED[0] * scale,
+    };
+    bracket(from, TRIED[1] * scale, WIDTH, |h| holds(stepping, h))
 }
 
 fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
     let scene = stepping.scene.scene();
     let scale = scene.info().time_scale_s;
-    let found = measure(stepping);
+    let found = measure(stepping, theory);
     let closed = scene.stability_limit(stepping.method);
     let (low, high, beyond) = match found {
         Found::NoStep { tried_s } => (None, Some(tried_s), tried_s),
@@ -133,7 +137,7 @@ fn size(a: &[fx128], b: &[fx128], scale: f64) -> f64 {
 
 /// What the difference of two runs does at a step that is known to fail, or not to.
 fn beyond_the_limit(stepping: &Stepping<'_>, h_s: f64) -> Failure {
-    let log2_steps = if stepping.method.is_implicit() { 11 } else { 16 };
+    let log2_steps = if stepping.method.is_implicit() { 8 } else { 16 };
     match judge::trend(&difference(stepping, h_s, &GENERIC, log2_steps)) {
         Some(Trend::Exponential) => Failure::of_growth(&difference_early(stepping, h_s)),
         _ => Failure::None,

@@ -10,7 +10,7 @@ use super::failure::{Failure, Signal};
 use super::models::Damped;
 use super::spin::{Free, at_rest, thin_body};
 use super::{Part, Row};
-use crate::observation::Quantity;
+use crate::observation::{Observation, Quantity, norm};
 use crate::run::{Outcome, Precision, Run};
 use crate::scene::Motion;
 use crate::scenes::{self, ForcedOscillator};
@@ -206,35 +206,33 @@ fn drift() -> Vec<Curve> {
     vec![run(false, "Euler, L stored"), run(true, "Implicit midpoint, L stored")]
 }
 
-/// Implicit midpoint on an eccentric orbit: with a step that jumps over the pericentre Newton's iteration finds nothing.
+/// Implicit Euler on an eccentric orbit: with a step that jumps over the pericentre Newton's iteration finds nothing.
+/// Shown are 512 steps an orbit and the first halving of them at which a run ends so.
 fn newton() -> Vec<Curve> {
     let Ok(scene) = scenes::by_id("kepler/eccentric") else { return Vec::new() };
-    let period = scene.scene().info().time_scale_s * std::f64::consts::TAU;
-    [(512_u32, 1024_u64), (24, 48)]
-        .map(|(steps_an_orbit, steps)| {
-            let run = Run::new(
-                MethodId::ImplicitEuler,
-                Precision::F64,
-                period * steps as f64 / f64::from(steps_an_orbit),
-                steps,
-            );
-            let trajectory = scene.run(&run, 1);
-            let h = run.h_s();
-            let radius = |seen: &crate::observation::Observation| {
-                crate::observation::norm(seen.vector(Quantity::Position).iter().copied()).to_f64()
-            };
-            let numeric: Vec<f64> = trajectory.seen.iter().map(|(_, seen)| radius(seen)).collect();
-            let exact: Vec<f64> = (0..=steps).map(|i| radius(&scene.exact(fx128::lit(i as f64 * h)))).collect();
-            let unsolved = trajectory.outcome == Outcome::NotConverged;
-            let failure =
-                Failure::of_signal(&Signal { numeric: &numeric, exact: &exact, turn_per_step: 0.0, unsolved });
-            Curve {
-                name: format!("Implicit Euler, {steps_an_orbit} steps an orbit"),
-                points: timed(&numeric, h),
-                failure,
-            }
-        })
-        .into()
+    let orbit = |method: MethodId, steps_an_orbit: u32| {
+        let period = scene.scene().info().time_scale_s * std::f64::consts::TAU;
+        let steps = 2 * u64::from(steps_an_orbit);
+        let run = Run::new(method, Precision::F64, 2.0 * period, steps);
+        let trajectory = scene.run(&run, 1);
+        let h = run.h_s();
+        let radius = |seen: &Observation| norm(seen.vector(Quantity::Position).iter().copied()).to_f64();
+        let numeric: Vec<f64> = trajectory.seen.iter().map(|(_, seen)| radius(seen)).collect();
+        let exact: Vec<f64> = (0..=steps).map(|i| radius(&scene.exact(fx128::lit(i as f64 * h)))).collect();
+        let unsolved = trajectory.outcome == Outcome::NotConverged;
+        let failure = Failure::of_signal(&Signal { numeric: &numeric, exact: &exact, turn_per_step: 0.0, unsolved });
+        Curve {
+            name: format!("{}, {steps_an_orbit} steps an orbit", method.title()),
+            points: timed(&numeric, h),
+            failure,
+        }
+    };
+    let mut curves = vec![orbit(MethodId::ImplicitEuler, 512)];
+    for method in [MethodId::ImplicitEuler, MethodId::ImplicitMidpoint] {
+        let halvings = [256, 128, 64, 32, 16, 12, 8, 6, 4, 3].into_iter().map(|steps| orbit(method, steps));
+        curves.extend(halvings.into_iter().find(|curve| curve.failure == Failure::NewtonNotConverging));
+    }
+    curves
 }
 
 /// RK4 on a body thrown upwards against quadratic drag: at the apex the force has no second derivative.
