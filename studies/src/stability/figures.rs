@@ -265,9 +265,9 @@ fn about(id: &str) -> Option<(&'static str, &'static str, &'static str, &'static
         ),
         "newton-not-converging" => (
             "Newton's iteration finds no solution",
-            "With few steps an orbit the run ends where a step should jump through the pericentre: its equations are not solved.",
-            "kepler",
-            "distance from the sun (m)",
+            "With a step of many swings the equations of a step have many solutions, and the iteration wanders between them: the run ends.",
+            "pendulum",
+            "angular velocity (rad/s)",
             false,
         ),
         "order-lost" => (

@@ -67,7 +67,7 @@ pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
         return (now <= FALLING || length >= PATIENCE).then_some(Trend::Bounded);
     }
     if earlier > 1.0 && now.ln() < 1.2 * earlier.ln() {
-        return Some(Trend::Power);
+        return (length >= PATIENCE).then_some(Trend::Power);
     }
     // A drift that comes up from below a constant has factors that rise to 2: only beyond is it more than that.
     (now > MORE_THAN_LINEAR).then_some(Trend::Exponential)

@@ -96,9 +96,10 @@ const GENERIC: [f64; 32] = {
     displacement
 };
 
-/// Size of the difference of two runs, sqrt(|dv|^2 + |dq|^2 / scale^2), at the steps of [`judge::looks`].
+/// Size of the difference of two runs, |dv|, at the steps of [`judge::looks`]: whatever grows exponentially shows in the
+/// velocity, and a position that drifts under no force does not.
 fn difference(stepping: &Stepping<'_>, h_s: f64, displacement: &[f64], log2_steps: u32) -> Vec<(u64, f64)> {
-    difference_at(stepping, h_s, displacement, 1 << log2_steps, &judge::looks(log2_steps))
+    difference_at(stepping, h_s, displacement, 1 << log2_steps, &judge::looks(log2_steps), false)
 }
 
 fn difference_at(
@@ -107,6 +108,7 @@ fn difference_at(
     displacement: &[f64],
     steps: u64,
     looks: &[u64],
+    with_positions: bool,
 ) -> Vec<(u64, f64)> {
     let walk = |displacement: &[f64]| stepping.walk(h_s, steps, displacement, looks);
     let (Some(own), Some(moved)) = (walk(&[]), walk(displacement)) else { return Vec::new() };
@@ -115,8 +117,8 @@ fn difference_at(
     let mut sizes: Vec<(u64, f64)> = Vec::with_capacity(looks.len());
     for ((step, a), (_, b)) in own.seen.iter().zip(&moved.seen) {
         let (a, b) = (coordinates(a), coordinates(b));
-        let difference = size(&a, &b, scale);
-        let of_terms = size(&a, &vec![fx128::ZERO; a.len()], scale);
+        let difference = size(&a, &b, scale, with_positions);
+        let of_terms = size(&a, &vec![fx128::ZERO; a.len()], scale, with_positions);
         // A difference below the rounding of its terms tells nothing: it counts as unchanged.
         let start = sizes.first().map_or(difference, |(_, start)| *start);
         let noise = *step as f64 * rounding * of_terms;
@@ -128,9 +130,10 @@ fn difference_at(
     sizes
 }
 
-fn size(a: &[fx128], b: &[fx128], scale: f64) -> f64 {
+fn size(a: &[fx128], b: &[fx128], scale: f64, with_positions: bool) -> f64 {
+    let of_position = if with_positions { 1.0 / scale } else { 0.0 };
     let n = a.len() / 2;
-    let weight = |i: usize| fx128::from_f64(if i < n { 1.0 / scale } else { 1.0 });
+    let weight = |i: usize| fx128::from_f64(if i < n { of_position } else { 1.0 });
     let parts: Vec<fx128> = a.iter().zip(b).enumerate().map(|(i, (&x, &y))| (x - y) * weight(i)).collect();
     norm(parts.into_iter()).to_f64()
 }
@@ -147,7 +150,7 @@ fn beyond_the_limit(stepping: &Stepping<'_>, h_s: f64) -> Failure {
 /// The first steps, all of them, up to overflow.
 fn difference_early(stepping: &Stepping<'_>, h_s: f64) -> Vec<(u64, f64)> {
     let steps = 1 << 13;
-    difference_at(stepping, h_s, &GENERIC, steps, &(0..=steps).collect::<Vec<_>>())
+    difference_at(stepping, h_s, &GENERIC, steps, &(0..=steps).collect::<Vec<_>>(), false)
 }
 
 /// Steps at which the growth of a method that has no stable step is measured, in natural time scales.
@@ -162,7 +165,7 @@ fn rate_row(stepping: &Stepping<'_>, z: f64) -> Option<Row> {
     let theory = matrix.spectral_radius()?.ln();
     let direction = matrix.dominant_direction()?;
     let steps = ((LN_GROWTH / theory) as u64).clamp(16, 1 << 20);
-    let sizes = difference_at(stepping, h_s, &direction, steps, &[steps / 2, steps]);
+    let sizes = difference_at(stepping, h_s, &direction, steps, &[steps / 2, steps], true);
     let [(first, a), (last, b)] = sizes[..] else { return None };
     let measured = (b / a).ln() / (last - first) as f64;
     Some(Row {

@@ -10,7 +10,7 @@ use super::failure::{Failure, Signal};
 use super::models::Damped;
 use super::spin::{Free, at_rest, thin_body};
 use super::{Part, Row};
-use crate::observation::{Observation, Quantity, norm};
+use crate::observation::{Observation, Quantity};
 use crate::run::{Outcome, Precision, Run};
 use crate::scene::Motion;
 use crate::scenes::{self, ForcedOscillator};
@@ -53,8 +53,8 @@ pub(super) fn rows(has: impl Fn(&str) -> bool) -> Vec<Row> {
         add("flipped-axis", "1", flipped_axis());
         add("drift", "1", drift());
     }
-    if has("kepler") {
-        add("newton-not-converging", "m", newton());
+    if has("pendulum") {
+        add("newton-not-converging", "rad/s", newton());
     }
     if has("quadratic-drag") {
         add("order-lost", "m", order_lost());
@@ -206,33 +206,27 @@ fn drift() -> Vec<Curve> {
     vec![run(false, "Euler, L stored"), run(true, "Implicit midpoint, L stored")]
 }
 
-/// Implicit Euler on an eccentric orbit: with a step that jumps over the pericentre Newton's iteration finds nothing.
-/// Shown are 512 steps an orbit and the first halving of them at which a run ends so.
+/// Implicit methods on a pendulum: the first of a few steps, each twice the one before, at which Newton's iteration finds
+/// nothing, beside a step at which it does. No picture where it always finds a solution.
 fn newton() -> Vec<Curve> {
-    let Ok(scene) = scenes::by_id("kepler/eccentric") else { return Vec::new() };
-    let orbit = |method: MethodId, steps_an_orbit: u32| {
-        let period = scene.scene().info().time_scale_s * std::f64::consts::TAU;
-        let steps = 2 * u64::from(steps_an_orbit);
-        let run = Run::new(method, Precision::F64, 2.0 * period, steps);
+    let Ok(scene) = scenes::by_id("pendulum") else { return Vec::new() };
+    let scale = scene.scene().info().time_scale_s;
+    let swing = |method: MethodId, z: f64| {
+        let steps = (256.0 / z).clamp(64.0, 1024.0) as u64;
+        let run = Run::new(method, Precision::F64, z * scale * steps as f64, steps);
         let trajectory = scene.run(&run, 1);
-        let h = run.h_s();
-        let radius = |seen: &Observation| norm(seen.vector(Quantity::Position).iter().copied()).to_f64();
-        let numeric: Vec<f64> = trajectory.seen.iter().map(|(_, seen)| radius(seen)).collect();
-        let exact: Vec<f64> = (0..=steps).map(|i| radius(&scene.exact(fx128::lit(i as f64 * h)))).collect();
+        let rate = |seen: &Observation| seen.vector(Quantity::AngularVelocity).first().map_or(f64::NAN, |w| w.to_f64());
+        let numeric: Vec<f64> = trajectory.seen.iter().map(|(_, seen)| rate(seen)).collect();
+        let exact: Vec<f64> = (0..=steps).map(|i| rate(&scene.exact(fx128::lit(i as f64 * run.h_s())))).collect();
         let unsolved = trajectory.outcome == Outcome::NotConverged;
-        let failure = Failure::of_signal(&Signal { numeric: &numeric, exact: &exact, turn_per_step: 0.0, unsolved });
-        Curve {
-            name: format!("{}, {steps_an_orbit} steps an orbit", method.title()),
-            points: timed(&numeric, h),
-            failure,
-        }
+        let failure = Failure::of_signal(&Signal { numeric: &numeric, exact: &exact, turn_per_step: z, unsolved });
+        Curve { name: format!("{}, h omega = {z}", method.title()), points: timed(&numeric, run.h_s()), failure }
     };
-    let mut curves = vec![orbit(MethodId::ImplicitEuler, 512)];
-    for method in [MethodId::ImplicitEuler, MethodId::ImplicitMidpoint] {
-        let halvings = [256, 128, 64, 32, 16, 12, 8, 6, 4, 3].into_iter().map(|steps| orbit(method, steps));
-        curves.extend(halvings.into_iter().find(|curve| curve.failure == Failure::NewtonNotConverging));
-    }
-    curves
+    let failing = [MethodId::ImplicitMidpoint, MethodId::ImplicitEuler].into_iter().find_map(|method| {
+        let steps = (1..10).map(|i| swing(method, f64::from(i).exp2()));
+        steps.into_iter().find(|curve| curve.failure == Failure::NewtonNotConverging).map(|curve| (method, curve))
+    });
+    failing.map_or_else(Vec::new, |(method, curve)| vec![swing(method, 0.25), curve])
 }
 
 /// RK4 on a body thrown upwards against quadratic drag: at the apex the force has no second derivative.
