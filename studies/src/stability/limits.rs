@@ -14,7 +14,7 @@ use crate::run::Precision;
 use crate::scene::StabilityLimit;
 
 /// Steps tried, in natural time scales of the scene.
-pub const TRIED: [f64; 2] = [1.0 / 8.0, 1024.0];
+pub const TRIED: [f64; 2] = [1.0 / 4.0, 1024.0];
 /// Lengths of the runs that a verdict is sought from, as powers of two; the last one decides.
 const LENGTHS: [u32; 3] = [10, 16, 20];
 /// The same for implicit methods, whose steps cost a hundred times as much and whose verdicts are not near a limit.
