@@ -54,7 +54,8 @@ fn limits_of_the_oscillator_are_two_and_the_root_of_eight() {
 fn limits_of_linear_drag_are_two_and_rk4s_real_axis() {
     for (method, value) in [(MethodId::ExplicitEuler, 2.0), (MethodId::Rk4, 2.785_293_563_405_282)] {
         let limit = scaled("linear-drag", method);
-        assert!((limit - value).abs() < MATRIX, "{}: {limit}", method.id());
+        // RK4's R comes back to +1, which the positions have too: told from it only by amplification::NEUTRAL, |R'| > 1/2.
+        assert!((limit - value).abs() < 2.0 * amplification::NEUTRAL, "{}: {limit}", method.id());
     }
 }
 
@@ -215,5 +216,6 @@ fn every_claim_of_a_quick_study_holds() {
         row.closed_form = None;
     }
     let claims = Stability::claims(&wrong);
-    assert!(!claims.is_empty() && claims.iter().all(|claim| claim.verdict == Verdict::Broken));
+    let kept: Vec<_> = claims.iter().filter(|claim| claim.verdict != Verdict::Broken).collect();
+    assert!(!claims.is_empty() && kept.is_empty(), "{kept:#?}");
 }

@@ -62,11 +62,11 @@ fn columns(stepping: &Stepping<'_>, h_s: f64, test: bool) -> Option<Amplificatio
     for j in 0..n {
         let column = minus(&step(&moved(&[(j, 1.0)]))?, &origin);
         if test {
-            // Superposition, along e_j and with its neighbour: a square, a modulus or a contact betrays itself.
-            let far = minus(&step(&moved(&[(j, -3.0)]))?, &origin);
+            // Superposition, far along e_j and with its neighbour: a square, a modulus or a contact betrays itself.
+            let far = minus(&step(&moved(&[(j, -64.0)]))?, &origin);
             let other = ((j + 1) % n, 2.0);
             let mixed = minus(&step(&moved(&[(j, 1.0), other]))?, &step(&moved(&[other]))?);
-            if !proportional(&far, &column, -3.0) || !proportional(&mixed, &column, 1.0) {
+            if !proportional(&far, &column, -64.0) || !proportional(&mixed, &column, 1.0) {
                 return None;
             }
         }
