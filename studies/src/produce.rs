@@ -9,6 +9,7 @@ use crate::drift::DriftStudy;
 use crate::error::Error;
 use crate::provenance;
 use crate::rotation::Rotation;
+use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
 
 /// What a study has made: files to be written, and its part of the page.
@@ -28,6 +29,7 @@ pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
         of::<DriftStudy>(selection)?,
         of::<Rotation>(selection)?,
         of::<Adequacy>(selection)?,
+        of::<Stability>(selection)?,
     ])
 }
 
