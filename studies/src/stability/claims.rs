@@ -72,7 +72,8 @@ pub fn bracket_agrees(row: &Row) -> bool {
 /// Parameters and the step are rounded to the precision of the run: so is the limit.
 fn contains(low: f64, high: f64, theory: f64, precision: Precision) -> bool {
     let slack = 8.0 * precision.epsilon() * theory;
-    low - slack <= theory && theory <= high + slack
+    // An infinite limit lies in no bracket, whatever its slack.
+    theory.is_finite() && low - slack <= theory && theory <= high + slack
 }
 
 fn bracket_words(row: &Row) -> String {
