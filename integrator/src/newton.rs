@@ -58,6 +58,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
     let mut largest = z.norm::<T>();
     for _ in 0..MOST_ITERATIONS {
         let r = residual(&z);
+        let fresh = renew;
         if renew {
             jacobian = Some(decompose(&z, &r, residual)?);
         }
@@ -77,10 +78,13 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         // The last correction was applied: what remains is its square, or `SLOW` of it.
         let norm = z.norm::<T>().max(tiny::<T>());
         // The residual rounds as the terms it is the difference of, of which the guess and the iterates are made: where they
-        // cancel (a velocity passing through zero), corrections stop shrinking above the rounding of z itself.
+        // cancel (a velocity passing through zero), corrections stop shrinking above the rounding of z itself; by how much
+        // more in a stiff system its stiffness decides. A correction that a Jacobian of this very place does not shrink is
+        // rounding, if it is small at all.
         largest = largest.max(norm);
         if size <= 0.25 * T::EPSILON * norm
             || (size <= 16.0 * T::EPSILON * largest && size >= 0.5 * last)
+            || (size <= T::EPSILON.sqrt() * largest && size >= 0.5 * last && fresh)
             || size == 0.0
         {
             return Some(z);

@@ -99,7 +99,7 @@ fn oscillators_agree_with_the_reference() {
         let (x0, v0) = (case.number("x0"), case.number("v0"));
         check(case, ["x", "v"], &ForcedOscillator { mass, stiffness, damping, force, drive, x0, v0 });
         if force == 0.0 {
-            check(case, ["x", "v"], &DampedOscillator { mass, stiffness, damping, x0, v0 });
+            check(case, ["x", "v"], &DampedOscillator { mass, stiffness, zeta, x0, v0 });
         }
         if force == 0.0 && zeta == 0.0 {
             check(case, ["x", "v"], &Oscillator { mass, stiffness, x0, v0 });

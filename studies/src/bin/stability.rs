@@ -17,7 +17,7 @@ use studies::stability::answer::{Question, answer};
     version,
     after_help = "Examples:
   stability                                                      the whole study, into target/report/
-  stability --scene damped-oscillator --method semi-implicit-euler --set damping=0.6
+  stability --scene damped-oscillator --method semi-implicit-euler --set zeta=0.1
   stability --scene oscillator --method velocity-verlet --step 0.01 --rate 60
 
 Exit codes: 0 all claims hold and every step asked about is stable, 1 not so, 2 wrong input."

@@ -20,8 +20,8 @@ scene_parameters! {
         mass: f64 = 1.5, "kg", Positive;
         /// Stiffness of the spring.
         stiffness: f64 = 6.0, "N/m", Positive;
-        /// Damping coefficient c.
-        damping: f64 = 0.75, "kg/s", NonNegative;
+        /// Damping ratio c / (2 sqrt(k m)).
+        zeta: f64 = 0.125, "1", NonNegative;
         /// Displacement at the start.
         x0: f64 = 0.75, "m", Finite;
         /// Velocity at the start.
@@ -32,18 +32,23 @@ scene_parameters! {
 impl DampedOscillator {
     /// zeta = 1, exactly.
     pub fn critical() -> Self {
-        DampedOscillator { damping: 6.0, ..Self::default() }
+        DampedOscillator { zeta: 1.0, ..Self::default() }
     }
 
     /// zeta = 5/2.
     pub fn over_damped() -> Self {
-        DampedOscillator { damping: 15.0, ..Self::default() }
+        DampedOscillator { zeta: 2.5, ..Self::default() }
+    }
+
+    /// c = 2 zeta sqrt(k m), kg/s.
+    fn damping<T: Real>(&self) -> T {
+        T::lit(2.0 * self.zeta) * (T::lit(self.stiffness) * T::lit(self.mass)).sqrt()
     }
 
     fn oscillation(&self) -> Oscillation {
         let mass = fx128::lit(self.mass);
         Oscillation {
-            decay: fx128::lit(self.damping) / (mass + mass),
+            decay: self.damping::<fx128>() / (mass + mass),
             square: fx128::lit(self.stiffness) / mass,
             force: fx128::ZERO,
             drive: fx128::ZERO,
@@ -58,7 +63,7 @@ impl<T: Real> Model<T> for DampedOscillator {
 
     #[inline(always)]
     fn rate(&self, _t: T, s: &State<Vector1<T>>) -> Vector1<T> {
-        (s.q * T::lit(self.stiffness) + s.v * T::lit(self.damping)) / -T::lit(self.mass)
+        (s.q * T::lit(self.stiffness) + s.v * self.damping::<T>()) / -T::lit(self.mass)
     }
 }
 
@@ -85,7 +90,7 @@ impl Scene for DampedOscillator {
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let twice = fx128::lit(self.mass) * v * v + fx128::lit(self.stiffness) * x * x;
-        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.damping == 0.0 }]
+        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.zeta == 0.0 }]
     }
 
     fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
