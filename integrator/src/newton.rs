@@ -57,10 +57,14 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
     let mut last = f64::INFINITY;
     let mut largest = z.norm::<T>();
     for _ in 0..MOST_ITERATIONS {
-        let r = residual(&z);
+        let mut r = residual(&z);
         let fresh = renew;
         if renew {
-            jacobian = Some(decompose(&z, &r, residual)?);
+            if jacobian.is_none() {
+                // The identity was wrong, and has led away by more than it brought near.
+                (z, r, largest) = (guess, residual(&guess), guess.norm::<T>());
+            }
+            jacobian = Some(decompose(&z, &r, largest, residual)?);
         }
         let correction = match &jacobian {
             None => r,
@@ -83,7 +87,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         // rounding, if it is small at all.
         largest = largest.max(norm);
         if size <= 0.25 * T::EPSILON * norm
-            || (size <= 16.0 * T::EPSILON * largest && size >= 0.5 * last)
+            || (size <= 16.0 * T::EPSILON * largest && (size >= 0.5 * last || fresh))
             || (size <= T::EPSILON.sqrt() * largest && size >= 0.5 * last && fresh)
             || size == 0.0
         {
@@ -99,18 +103,19 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
 fn decompose<T: Single, V: Vector<T>>(
     z: &Pair<V>,
     r: &Pair<V>,
+    largest: f64,
     residual: &dyn Fn(&Pair<V>) -> Pair<V>,
 ) -> Option<LU<f64, Dyn, Dyn>> {
     let n = 2 * V::DIM;
-    // Where the residual is larger than the unknowns, a difference scaled to them would be lost in it.
-    let scale = z.norm::<T>().max(r.norm::<T>()).max(tiny::<T>());
+    // Where the terms of the residual are larger than the unknowns, a difference scaled to these would be lost in them.
+    let scale = largest.max(r.norm::<T>()).max(tiny::<T>());
     if !scale.is_finite() {
         return None;
     }
     let root = T::EPSILON.sqrt();
     let mut jacobian = DMatrix::zeros(n, n);
     for j in 0..n {
-        let delta = T::lit(root * (z.get::<T>(j).to_f64().abs() + scale / n as f64));
+        let delta = T::lit(root * (z.get::<T>(j).to_f64().abs() + scale));
         let moved = Pair::from_fn(|i| if i == j { z.get::<T>(i) + delta } else { z.get(i) });
         let change = residual(&moved);
         for i in 0..n {
