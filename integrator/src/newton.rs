@@ -56,13 +56,14 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
     let mut renew = false;
     let mut last = f64::INFINITY;
     let mut largest = z.norm::<T>();
-    for _ in 0..MOST_ITERATIONS {
-        let mut r = residual(&z);
+    let at_guess = residual(&guess);
+    for iteration in 0..MOST_ITERATIONS {
+        let mut r = if iteration == 0 { at_guess } else { residual(&z) };
         let fresh = renew;
         if renew {
             if jacobian.is_none() {
                 // The identity was wrong, and has led away by more than it brought near.
-                (z, r, largest) = (guess, residual(&guess), guess.norm::<T>());
+                (z, r, largest, last) = (guess, at_guess, guess.norm::<T>(), f64::INFINITY);
             }
             jacobian = Some(decompose(&z, &r, largest, residual)?);
         }
