@@ -40,7 +40,7 @@ pub fn all(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: String, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
+fn claim(id: &str, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
     let study = "stability".to_owned();
     Claim {
         id: format!("stability.{id}"),
@@ -87,7 +87,7 @@ fn bracket_words(row: &Row) -> String {
 
 fn limit(row: &Row) -> Claim {
     claim(
-        format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id()),
+        &format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id()),
         format!("the largest stable step of {} on {} in {}", row.method, row.scene, row.precision.id()),
         row.theory.map_or_else(|| "unknown".to_owned(), limit_words),
         bracket_words(row),
@@ -100,7 +100,7 @@ fn rate(row: &Row) -> Claim {
     let (measured, theory) = (row.measured.unwrap_or(f64::NAN), row.theory.unwrap_or(f64::NAN));
     let z = row.h_omega.unwrap_or(f64::NAN);
     claim(
-        format!("rate.{}.{}.{z}", row.scene, row.method),
+        &format!("rate.{}.{}.{z}", row.scene, row.method),
         format!("growth of {} on {} at {z} time scales a step", row.method, row.scene),
         format!("{theory:.12e} a step"),
         format!("{measured:.12e} a step"),
@@ -115,7 +115,7 @@ fn unconditional(row: &Row) -> Claim {
     // One step solves a system whose matrix has condition 1 + z^2 in these coordinates.
     let tolerance = 16.0 * f64::EPSILON * (1.0 + z * z);
     claim(
-        format!("unconditional.{}.{}.{z}", row.method, row.unit),
+        &format!("unconditional.{}.{}.{z}", row.method, row.unit),
         format!("{} of {} at h omega = {z}", row.quantity, row.method),
         format!("{theory:.12e} {}", row.unit),
         format!("{measured:.12e} {}", row.unit),
@@ -129,7 +129,7 @@ fn drag(row: &Row) -> Claim {
         contains(low, high, theory, row.precision) && high - low <= BRACKET * high
     });
     claim(
-        format!("quadratic-drag.{}", row.quantity.replace(' ', "-")),
+        &format!("quadratic-drag.{}", row.quantity.replace(' ', "-")),
         format!("the largest {} of explicit Euler", row.quantity),
         row.theory.map_or_else(String::new, limit_words),
         bracket_words(row),
@@ -141,7 +141,7 @@ fn drag(row: &Row) -> Claim {
 fn blow_up(row: &Row) -> Claim {
     let (measured, bound) = (row.measured.unwrap_or(f64::NAN), row.theory.unwrap_or(f64::NAN));
     claim(
-        format!("blow-up.{}", row.h_s.unwrap_or(f64::NAN)),
+        &format!("blow-up.{}", row.h_s.unwrap_or(f64::NAN)),
         format!("a free thin body blows up in finite time with h = {} s", row.h_s.unwrap_or(f64::NAN)),
         format!("not before {bound:.4} s"),
         format!("{measured:.4} s, {}", row.failure),
@@ -174,7 +174,7 @@ fn damped_maps(rows: &[Row]) -> Vec<Claim> {
         .map(|(scheme, cells)| {
             let distance = damped_distance(&cells, |zeta| scheme.limit(zeta));
             claim(
-                format!("map.damped.{}", scheme.id()),
+                &format!("map.damped.{}", scheme.id()),
                 format!("the boundary of {} on the damped oscillator lies on theory's curve", scheme.title()),
                 "the limit in h omega as a function of zeta".to_owned(),
                 format!("at most {distance:.2} cells away"),
@@ -199,7 +199,7 @@ fn spin_maps(rows: &[Row]) -> Vec<Claim> {
                 // NaN is the worst.
                 .reduce(|a, b| if b.is_nan() || b > a { b } else { a })?;
             Some(claim(
-                format!("map.spin.{}", scheme.id()),
+                &format!("map.spin.{}", scheme.id()),
                 format!("nutation factor in one step: {}", scheme.title()),
                 "the factor of the linearised spin".to_owned(),
                 format!("largest difference {worst:.1e}"),
@@ -220,7 +220,7 @@ fn regions(rows: &[Row]) -> Vec<Claim> {
                 .filter_map(|row| Some((row.measured? - row.theory?).abs() / row.theory?.max(1.0)))
                 .fold(0.0_f64, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
             claim(
-                format!("map.region.{method}"),
+                &format!("map.region.{method}"),
                 format!("one step of {method} multiplies y' = lambda y by |R(h lambda)| over the complex plane"),
                 "the stability function".to_owned(),
                 format!("largest difference {worst:.1e}"),
@@ -259,7 +259,7 @@ fn pictures(rows: &[Row]) -> Vec<Claim> {
             let words: Vec<&str> = seen.iter().map(|failure| failure.words()).collect();
             (!seen.is_empty()).then(|| {
                 claim(
-                    format!("picture.{id}"),
+                    &format!("picture.{id}"),
                     format!("the run of the picture '{id}' is seen to fail in this way"),
                     wanted.to_string(),
                     words.join("; "),
