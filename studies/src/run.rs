@@ -91,7 +91,7 @@ pub fn method_from_id(id: &str) -> Result<MethodId, Error> {
 }
 
 /// What to run on a scene. `A` names the rule of a step: a [`MethodId`], or a
-/// [`RigidStep`](integrator::methods::RigidStep) for a rigid body.
+/// [`RigidStep`] for a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<A = MethodId> {
     /// The rule of a step.

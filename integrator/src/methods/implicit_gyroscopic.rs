@@ -10,7 +10,7 @@ use crate::space::{Space, Vector};
 /// Semi-implicit Euler with the gyroscopic torque taken implicitly, by one Newton step in the body frame. Order 1, one
 /// evaluation, no iteration.
 ///
-/// With u = omega0 + h I^-1 tau(t0, q0, omega0), f(w) = I (w - u) + h w x I w and f' = I + h ([u] I - [I u]):
+/// With u = omega0 + h I^-1 tau(t0, q0, omega0), f(w) = I (w - u) + h w x I w and f' = I + h (`[u] I - [I u]`):
 /// omega1 = u - f'(u)^-1 f(u), then q1 = q0 exp(h omega1); the translation is semi-implicit Euler's.
 /// Source: E. Catto, Numerical Methods, Game Developers Conference (2015), slides on the gyroscopic torque.
 #[derive(Clone, Copy, Debug, Default)]

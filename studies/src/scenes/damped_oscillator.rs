@@ -1,6 +1,6 @@
 //! A mass on a spring with a damper: m x'' = -k x - c x'.
 //!
-//! With g = c / (2 m), w^2 = k / m and the motions C, S of [`super::oscillation`]: x = e^(-g t) (x0 C + (v0 + g x0) S),
+//! With g = c / (2 m), w^2 = k / m and the motions C, S of `oscillation.rs`: x = e^(-g t) (x0 C + (v0 + g x0) S),
 //! v = e^(-g t) (v0 C - (g v0 + w^2 x0) S), one formula below, at and above critical damping.
 
 use faer::fx128;

@@ -1,7 +1,7 @@
 //! A driven mass on a spring with a damper: m x'' = -k x - c x' + F cos(W t), the non-autonomous scene.
 //!
 //! The free motion of [`super::DampedOscillator`] plus F / m times the response from rest, the divided difference of e^(l t)
-//! over the two roots and i W: one formula at, near and away from resonance. See [`super::oscillation`].
+//! over the two roots and i W: one formula at, near and away from resonance. See `oscillation.rs`.
 
 use faer::fx128;
 use integrator::methods::MethodId;

@@ -101,7 +101,7 @@ impl<const N: usize> ParameterValue for [f64; N] {
     }
 }
 
-/// Parameters with names. [`scene_parameters!`] implements it.
+/// Parameters with names. `scene_parameters!` implements it.
 pub trait Parameters {
     /// All of them.
     fn parameters(&self) -> Vec<Parameter>;
