@@ -18,7 +18,7 @@ pub struct Diverged {
 /// Takes `steps` steps of length `h` and returns the last state, or where the run first left the finite numbers.
 ///
 /// # Errors
-/// [`Diverged`], with the step and its time.
+/// [`Diverged`], with the step.
 pub fn advance<T: Real, M: Model<T>, A: Method<T, M>>(
     method: &A,
     model: &M,

@@ -62,7 +62,7 @@ pub(crate) fn solve<T: Single, V: Vector<T>>(
         let fresh = renew;
         if renew {
             if jacobian.is_none() {
-                // The identity was wrong, and has led away by more than it brought near.
+                // The identity is slow at this step, or leads away: back to the guess.
                 (z, r, largest, last) = (guess, at_guess, guess.norm::<T>(), f64::INFINITY);
             }
             jacobian = Some(decompose(&z, &r, largest, residual)?);

@@ -38,21 +38,50 @@ impl OutputDir {
         self.write_with(name, |file| file.write_all(bytes.as_ref()))
     }
 
+    /// Writes several files, all or none: every one beside its place and flushed, and only then each renamed over it, so that
+    /// a disk that fills up leaves what stood there before.
+    ///
+    /// # Errors
+    /// As [`Self::write`]; of what is written until then nothing is left.
+    pub fn write_all<B: AsRef<[u8]>>(&self, files: &[(String, B)]) -> Result<(), Error> {
+        let mut staged = Vec::with_capacity(files.len());
+        for (name, bytes) in files {
+            match self.stage(name, |file| file.write_all(bytes.as_ref())) {
+                Ok(pair) => staged.push(pair),
+                Err(error) => {
+                    for (beside, _) in &staged {
+                        let _ = fs::remove_file(beside);
+                    }
+                    return Err(error);
+                }
+            }
+        }
+        staged.iter().try_for_each(|(beside, path)| fs::rename(beside, path).map_err(|source| refused(path, source)))
+    }
+
     fn write_with(&self, name: &str, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<PathBuf, Error> {
+        let (beside, path) = self.stage(name, fill)?;
+        fs::rename(&beside, &path).map_err(|source| {
+            let _ = fs::remove_file(&beside);
+            refused(&path, source)
+        })?;
+        Ok(path)
+    }
+
+    /// The file beside its place, whole and on the disk, and its place.
+    fn stage(&self, name: &str, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(PathBuf, PathBuf), Error> {
         let path = self.inside(name)?;
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(|source| refused(parent, source))?;
         }
         let beside = beside(&path);
-        let written = File::create(&beside)
-            .and_then(|mut file| fill(&mut file).and_then(|()| file.sync_all()))
-            .and_then(|()| fs::rename(&beside, &path));
+        let written = File::create(&beside).and_then(|mut file| fill(&mut file).and_then(|()| file.sync_all()));
         written.map_err(|source| {
             // The half-written file is of no use; that it may be left over is the lesser trouble to report.
             let _ = fs::remove_file(&beside);
             refused(&path, source)
         })?;
-        Ok(path)
+        Ok((beside, path))
     }
 
     fn inside(&self, name: &str) -> Result<PathBuf, Error> {
@@ -88,6 +117,21 @@ fn refused(path: &Path, source: io::Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    // Fails if: files are renamed as they are written, or a staged file is left behind.
+    #[test]
+    fn of_several_files_all_are_written_or_none() {
+        let (_temporary, output) = output();
+        output.write("first", "old").expect("written");
+        let good = [("first".to_owned(), "new"), ("second".to_owned(), "new")];
+        let bad = [("first".to_owned(), "new"), ("../escape".to_owned(), "new")];
+        assert!(output.write_all(&bad).is_err());
+        assert_eq!(fs::read_to_string(output.path().join("first")).expect("still there"), "old");
+        assert_eq!(fs::read_dir(output.path()).expect("a directory").count(), 1, "nothing is left beside");
+        output.write_all(&good).expect("written");
+        assert_eq!(fs::read_to_string(output.path().join("first")).expect("written"), "new");
+        assert_eq!(fs::read_dir(output.path()).expect("a directory").count(), 2);
+    }
 
     fn output() -> (tempfile::TempDir, OutputDir) {
         let temporary = tempfile::tempdir().expect("a temporary directory");

@@ -11,7 +11,7 @@ use reports::{Claim, exit_code};
 use crate::error::Error;
 use crate::run::{Precision, method_from_id};
 use crate::scenes;
-use crate::study::Selection;
+use crate::study::{Selection, distinct};
 use crate::sweep::Progress;
 
 /// What to run, and where to write it.
@@ -41,9 +41,9 @@ pub struct Common {
     #[arg(long)]
     pub quick: bool,
 
-    /// Directory for the results
-    #[arg(long, value_name = "DIR", default_value = "target/report")]
-    pub out: PathBuf,
+    /// Directory for the results [default: target/report for the report, target/NAME for the study NAME]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 
     /// Threads to run on [default: all cores]
     #[arg(long, value_name = "N")]
@@ -54,7 +54,15 @@ pub struct Common {
     pub quiet: bool,
 }
 
+/// More threads than any machine has cores.
+const MOST_THREADS: usize = 1024;
+
 impl Common {
+    /// The directory for the results of the study (or the report) of that name.
+    pub fn out(&self, name: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| PathBuf::from("target").join(name))
+    }
+
     /// The scenes, methods and precisions that were asked for.
     ///
     /// # Errors
@@ -64,8 +72,10 @@ impl Common {
             return Err(plan("--steps", "a run has at least 1 step; give numbers such as 64,128,256"));
         }
         if let Some(threads) = self.threads {
-            if threads == 0 {
-                return Err(plan("--threads", "give at least 1, or leave the flag out for all cores"));
+            if !(1..=MOST_THREADS).contains(&threads) {
+                let message =
+                    format!("give at least 1 and at most {MOST_THREADS}, or leave the flag out for all cores");
+                return Err(plan("--threads", &message));
             }
             // Fails only if a pool exists already, and then its size was chosen by the same flag.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -78,7 +88,7 @@ impl Common {
             }
             all
         } else {
-            self.scene.iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
+            distinct(&self.scene).into_iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
         };
         self.apply_settings(&mut chosen)?;
         let label = (!self.quiet && std::io::stderr().is_terminal()).then(String::new);
@@ -86,7 +96,7 @@ impl Common {
             scenes: chosen,
             methods: named(&self.method, method_from_id, MethodId::ALL)?,
             precisions: named(&self.precision, Precision::from_id, &Precision::ALL)?,
-            steps: self.steps.clone(),
+            steps: distinct(self.steps.iter().copied()),
             quick: self.quick,
             progress: Progress { label },
         })
@@ -129,15 +139,18 @@ fn named<V: Copy + PartialEq>(
     if names.is_empty() {
         return Ok(all.to_vec());
     }
-    Ok(crate::study::distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
+    Ok(distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
 }
 
 /// Prints to stdout. A reader that has gone away (`| head`) is no error; a disk that is full is one.
-fn print(text: &str) -> Result<(), Error> {
+///
+/// # Errors
+/// Standard output that cannot be written.
+pub fn print(text: &str) -> Result<(), Error> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(plan("standard output", &format!("cannot be written: {error}; the files were written all the same")))
+            Err(plan("standard output", &format!("cannot be written: {error}; free some space, or send it elsewhere")))
         }
         _ => Ok(()),
     }

@@ -22,6 +22,9 @@ pub struct Product {
     pub claims: Vec<Claim>,
 }
 
+/// The directory of the whole report, below `target/`.
+pub const REPORT: &str = "report";
+
 /// Every study of the report, in its order.
 pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
     Ok(vec![
@@ -81,9 +84,9 @@ pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
 /// Bad input, or an output that cannot be written.
 pub fn study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
     let mut selection = common.selection()?;
-    let out = OutputDir::create(&common.out)?;
+    let out = OutputDir::create(common.out(S::ID))?;
     let product = of::<S>(&mut selection)?;
-    write(&out, &product.files)?;
+    out.write_all(&product.files)?;
     Ok(product.claims)
 }
 
@@ -93,7 +96,7 @@ pub fn study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
 /// Bad input, or an output that cannot be written.
 pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
     let mut selection = common.selection()?;
-    let out = OutputDir::create(&common.out)?;
+    let out = OutputDir::create(common.out(REPORT))?;
     let products = all(&mut selection)?;
     let (mut files, mut sections, mut claims) = (Vec::new(), Vec::new(), Vec::new());
     for product in products {
@@ -111,7 +114,7 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
     };
     files.push(("manifest.json".to_owned(), provenance::manifest(common)));
     files.push(("index.html".to_owned(), page.html()?));
-    write(&out, &files)?;
+    out.write_all(&files)?;
     Ok(claims)
 }
 
@@ -159,12 +162,11 @@ fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
     FINDINGS.iter().filter_map(finding).collect()
 }
 
-fn write(out: &OutputDir, files: &[(String, String)]) -> Result<(), Error> {
-    files.iter().try_for_each(|(name, text)| out.write(name, text).map(|_| ()).map_err(Error::from))
-}
-
 /// A short table: how many claims of each study hold, and every one that does not.
 pub fn summary(claims: &[Claim]) -> String {
+    if claims.is_empty() {
+        return verdicts(claims);
+    }
     let mut table = Table::new(&["study", "holds", "broken", "not tested"], &["holds", "broken", "not tested"]);
     for study in claims.chunk_by(|a, b| a.study == b.study) {
         let counts = reports::claim::counts(study);
@@ -185,6 +187,9 @@ fn broken(claims: &[Claim]) -> Table {
 
 /// Every claim with its verdict.
 pub fn verdicts(claims: &[Claim]) -> String {
+    if claims.is_empty() {
+        return "no claim is made about this selection; its tables and charts are written\n".to_owned();
+    }
     let mut table = Table::new(&["claim", "theory", "measured", "verdict"], &[]);
     for claim in claims {
         let verdict = format!("{} {}", claim.verdict.sign(), claim.verdict);

@@ -92,7 +92,7 @@ fn wrong_input_is_named_with_its_remedy_and_ends_with_2() {
         (&["--scene", "oscillator", "--set", "mass"], "NAME=VALUE"),
         (&["--scene", "torque-free-spin", "--set", "inertia=1,1,3"], "sum of the other two"),
     ];
-    for binary in ["report", "convergence", "drift"] {
+    for binary in ["report", "convergence", "drift", "rotation", "adequacy", "stability"] {
         for (arguments, expected) in cases {
             let out = tempfile::tempdir().expect("a temporary directory");
             let output = run(binary, arguments, out.path());
@@ -152,9 +152,35 @@ fn nothing_but_notes_goes_to_stderr_when_piped() {
 
 #[test]
 fn help_shows_examples() {
-    for binary in ["report", "convergence", "drift"] {
+    for binary in ["report", "convergence", "drift", "rotation", "adequacy", "stability"] {
         let output = program(binary).arg("--help").output().expect("the binary was built");
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stdout).contains("Examples:"), "{binary}");
     }
+}
+
+// Fails if: an answer is printed with a macro that panics.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_question_to_stability_is_answered_and_a_full_disk_told() {
+    let arguments = ["--scene", "damped-oscillator", "--method", "semi-implicit-euler", "--set", "zeta=0.1", "--step"];
+    let ask = |step: &str| program("stability").args(arguments).arg(step).output().expect("the binary was built");
+    // 2 (sqrt(1 + zeta^2) - zeta) / omega = 0.904988 s
+    assert_eq!(ask("0.9").status.code(), Some(0));
+    assert_eq!(ask("0.91").status.code(), Some(1));
+    assert!(text(&ask("0.9").stdout).contains("0.904988"));
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
+    let output = program("stability").args(arguments).arg("0.9").stdout(full).output().expect("the binary was built");
+    assert_eq!(output.status.code(), Some(2));
+}
+
+// Fails if: a scene given twice is swept twice, or a claim is made of a sweep that can decide nothing.
+#[test]
+fn a_scene_given_twice_is_one_and_two_runs_are_no_sweep() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let twice = ["--quick", "--scene", "oscillator", "--scene", "oscillator", "--method", "rk4"];
+    assert_eq!(run("convergence", &twice, out.path()).status.code(), Some(0));
+    let output = run("convergence", &["--scene", "oscillator", "--method", "rk4", "--steps", "64,128"], out.path());
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains("not tested"), "{}", text(&output.stdout));
 }

@@ -1,10 +1,11 @@
 //! The whole report: every study, one page.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 use studies::cli::{Common, finish};
-use studies::produce::{report, summary};
+use studies::produce::{REPORT, report, summary};
 
 /// Runs every study, prints the verdicts and writes the report: CSV, SVG and one page, index.html.
 #[derive(Parser)]
@@ -25,8 +26,11 @@ struct Cli {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let claims = report(&cli.common);
-    if claims.is_ok() && !cli.common.quiet {
-        eprintln!("report: {}", cli.common.out.join("index.html").display());
+    let written = claims.is_ok() && !cli.common.quiet;
+    let code = finish(claims, summary);
+    if written {
+        // Nobody is left to be told where standard error is closed too.
+        let _ = writeln!(std::io::stderr(), "report: {}", cli.common.out(REPORT).join("index.html").display());
     }
-    finish(claims, summary)
+    code
 }

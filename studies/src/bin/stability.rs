@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use studies::cli::{Common, finish};
+use studies::cli::{Common, finish, print};
 use studies::error::Error;
 use studies::produce::{study, verdicts};
 use studies::stability::Stability;
@@ -16,7 +16,7 @@ use studies::stability::answer::{Question, answer};
 #[command(
     version,
     after_help = "Examples:
-  stability                                                      the whole study, into target/report/
+  stability                                                      the whole study, into target/stability/
   stability --scene damped-oscillator --method semi-implicit-euler --set zeta=0.1
   stability --scene oscillator --method velocity-verlet --step 0.01 --rate 60
 
@@ -51,6 +51,6 @@ fn main() -> ExitCode {
 fn ask(cli: &Cli) -> Result<bool, Error> {
     let selection = cli.common.selection()?;
     let answer = answer(&selection, Question { step_s: cli.step, rate_hz: cli.rate })?;
-    print!("{}", answer.text);
+    print(&answer.text)?;
     Ok(answer.stable)
 }

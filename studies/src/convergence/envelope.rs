@@ -41,6 +41,7 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
         order_high: None,
         window_from_h_s: samples.get(middle).map(|s| s.h_s),
         window_to_h_s: samples.last().map(|s| s.h_s),
+        runs: samples.len(),
         window_points: Some(fine.len()),
         constant: Some(fine_top).filter(|x| x.is_finite()),
         constant_change: None,

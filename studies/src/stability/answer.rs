@@ -9,7 +9,6 @@ use super::amplification;
 use super::bisect::{Found, bracket};
 use super::displaced::Stepping;
 use super::limits;
-use super::tables::limit_words;
 use crate::error::Error;
 use crate::observation::Value;
 use crate::run::{Outcome, Precision, Run};
@@ -101,7 +100,11 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     if let Some(step) = question.step_s {
         let stable = step <= limit_s;
         answer.stable &= stable;
-        let verdict = if stable { "stable" } else { "NOT stable" };
+        let verdict = match (stable, linear.is_some()) {
+            (false, _) => "NOT stable".to_owned(),
+            (true, true) => "stable".to_owned(),
+            (true, false) => format!("did not fail within {TIME_SCALES} time scales"),
+        };
         let margin = if limit_s == 0.0 || limit_s.is_infinite() {
             String::new()
         } else {
@@ -118,8 +121,10 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
 }
 
 fn seconds(limit: f64) -> String {
-    if limit == 0.0 || limit.is_infinite() {
-        format!("{} is the limit", limit_words(limit))
+    if limit == 0.0 {
+        "no step is stable".to_owned()
+    } else if limit.is_infinite() {
+        "every step is stable".to_owned()
     } else {
         format!("h <= {limit:.6} s")
     }
