@@ -25,7 +25,7 @@ use crate::sweep::in_parallel;
 /// Halvings of the step from the coarsest to the finest run.
 pub const HALVINGS: u32 = 12;
 /// The same with `--quick`.
-pub const QUICK_HALVINGS: u32 = 10;
+pub const QUICK_HALVINGS: u32 = 9;
 /// Times at which a run is compared with the exact motion, evenly spaced; also the end.
 const CHECKPOINTS: u64 = 32;
 

@@ -88,7 +88,7 @@ pub fn tolerance(precision: Precision, runs: usize) -> f64 {
         Precision::F64 => 0.05,
         Precision::DoubleDouble => 0.02,
     };
-    let missing = (HALVINGS as usize + 1).saturating_sub(runs).min(2);
+    let missing = (HALVINGS as usize + 1).saturating_sub(runs).min(3);
     base * f64::from(1_u32 << missing)
 }
 

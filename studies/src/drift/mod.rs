@@ -29,6 +29,8 @@ const STEPS_A_TIME_SCALE: u64 = 32;
 const STRETCHES: u64 = 128;
 /// Observations in a stretch.
 const OBSERVATIONS: u64 = 16;
+/// The same with `--quick`.
+const QUICK_OBSERVATIONS: u64 = 8;
 
 /// What an error is taken of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -120,9 +122,10 @@ impl Study for DriftStudy {
         a linear one does not, an exponential one ruins every run that is long enough.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
-        let scales = if selection.quick { QUICK_TIME_SCALES } else { TIME_SCALES };
+        let (scales, observations) =
+            if selection.quick { (QUICK_TIME_SCALES, QUICK_OBSERVATIONS) } else { (TIME_SCALES, OBSERVATIONS) };
         let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
-        let tracks = in_parallel(&scenes, |_| 1, &Progress::silent(), |&scene| Track::of(scene, scales));
+        let tracks = in_parallel(&scenes, |_| 1, &Progress::silent(), |&scene| Track::of(scene, scales, observations));
         let mut jobs = Vec::new();
         for track in &tracks {
             for &method in &selection.methods {
@@ -166,11 +169,11 @@ struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    fn of(scene: &'a dyn AnyScene, time_scales: f64) -> Self {
+    fn of(scene: &'a dyn AnyScene, time_scales: f64, observations: u64) -> Self {
         // Dyadic, so that every precision takes the same step.
         let h_s = (scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
         let steps = time_scales as u64 * STEPS_A_TIME_SCALE;
-        let stride = (steps / STRETCHES / OBSERVATIONS).max(1);
+        let stride = (steps / STRETCHES / observations).max(1);
         let start = scene.exact(fx128::ZERO);
         let first = scene.scene().account(fx128::ZERO, &start);
         let at = |step: u64| {
