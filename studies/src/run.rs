@@ -184,7 +184,7 @@ impl<'a, T: Single, M: Motion<T>> Visitor<T, Counted<&'a M>> for Flat<'a, M> {
 ///
 /// What every study runs, the world omega with the exponential map, is compiled for each body. The other combinations
 /// take their body behind a pointer, one virtual call an evaluation: they are compared and not timed, and compiled for each
-/// body they would make the build several times as long.
+/// body they made the build more than twice as long.
 pub(crate) fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride: u64) -> Trajectory {
     let start = body.exact(T::lit(0.0));
     if (run.storage, run.update) != (Storage::WorldOmega, AttitudeUpdate::Exponential) {
