@@ -24,7 +24,7 @@ pub enum Error {
         root: PathBuf,
     },
     /// A CSV text that cannot be read as the rows asked for.
-    #[error("{place}:{line}:{column}: {message}")]
+    #[error("{place}:{line}:{column}: {message}; correct it, or have the file written anew")]
     Csv {
         /// The file the text came from.
         place: String,

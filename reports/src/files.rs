@@ -5,6 +5,21 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Held while files are written.
+static WRITING: Mutex<()> = Mutex::new(());
+
+fn guard() -> MutexGuard<'static, ()> {
+    // It protects no data, so that a panic of its holder is no reason to stop.
+    WRITING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does what ends the program, but not while files are written: with [`OutputDir::write_all`] they are all old or all new.
+pub fn when_written(then: impl FnOnce()) {
+    let _guard = guard();
+    then();
+}
 
 /// A directory that results are written to.
 #[derive(Clone, Debug)]
@@ -44,6 +59,7 @@ impl OutputDir {
     /// # Errors
     /// As [`Self::write`]; of what is written until then nothing is left.
     pub fn write_all<B: AsRef<[u8]>>(&self, files: &[(String, B)]) -> Result<(), Error> {
+        let _guard = guard();
         let mut staged = Vec::with_capacity(files.len());
         for (name, bytes) in files {
             match self.stage(name, |file| file.write_all(bytes.as_ref())) {

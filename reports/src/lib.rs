@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! rows    -> table::write_csv  -> CSV       the only hand-over between measuring and showing
-//! Figure  -> plot::svg         -> SVG
+//! Figure  -> plot::svg         -> SVG   -> png -> PNG
 //! Claim   -> claim::exit_code  -> 0 or 1
 //! Page    -> Page::html        -> one self-contained HTML file
 //! bytes   -> OutputDir::write  -> a file, whole or not at all
@@ -22,6 +22,7 @@ pub mod figure;
 pub mod files;
 pub mod page;
 pub mod plot;
+mod png;
 pub mod table;
 
 pub use claim::{Claim, Verdict, exit_code};
@@ -30,4 +31,5 @@ pub use figure::{Axis, AxisName, Cells, Figure, Layer, Line, Marker, Palette, Sc
 pub use files::OutputDir;
 pub use page::{Block, Finding, Page, Section};
 pub use plot::svg;
+pub use png::{DRAWS_PNG, png};
 pub use table::{Align, Table, read_csv, write_csv};

@@ -208,7 +208,7 @@ mod tests {
         let bad = read("scene,h_s,error_m\na,1,\nb,fast,2\n");
         assert!(bad.starts_with("data/rows.csv:3:2: 'h_s': ") && bad.contains("float"), "{bad}");
         let short = read("scene,h_s,error_m\na,1\n");
-        assert_eq!(short, "data/rows.csv:2:3: 2 fields where the header has 3");
+        assert!(short.starts_with("data/rows.csv:2:3: 2 fields where the header has 3; "), "{short}");
         let missing = read("scene,error_m\na,1\n");
         assert!(missing.starts_with("data/rows.csv:2:0: ") && missing.contains("h_s"), "{missing}");
     }

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A name that is not on the list.
-    #[error("unknown {kind} '{name}'{}\n  known: {}", suggestion(.nearest.as_deref()), known.join(", "))]
+    #[error("{kind} '{name}': unknown; {}known: {}", suggestion(.nearest.as_deref()), known.join(", "))]
     UnknownName {
         /// What was looked for: scene, method, precision.
         kind: &'static str,
@@ -41,10 +41,15 @@ pub enum Error {
 }
 
 fn suggestion(nearest: Option<&str>) -> String {
-    nearest.map_or_else(String::new, |name| format!(" (did you mean '{name}'?)"))
+    nearest.map_or_else(String::new, |name| format!("did you mean '{name}'? "))
 }
 
 impl Error {
+    /// The error at a place of the input, with what was found there and what would be right.
+    pub(crate) fn plan(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Error::Plan { place: place.into(), message: message.into() }
+    }
+
     /// The error for a name that is not among `known`.
     pub fn unknown(kind: &'static str, name: &str, known: impl IntoIterator<Item = String>) -> Self {
         let known: Vec<String> = known.into_iter().collect();

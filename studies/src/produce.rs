@@ -1,13 +1,16 @@
 //! From a plan to files: rows, tables, figures, claims, one page. Nothing is written before everything is known.
 
-use reports::{Block, Claim, Finding, OutputDir, Page, Section, Table};
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+use reports::{Block, Claim, Figure, Finding, OutputDir, Page, Section};
 
 use crate::adequacy::Adequacy;
-use crate::cli::Common;
+use crate::cli::{Common, Format};
 use crate::convergence::Convergence;
 use crate::drift::DriftStudy;
 use crate::error::Error;
-use crate::provenance;
+use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
@@ -15,7 +18,7 @@ use crate::study::{Derived, Selection, Study};
 /// What a study has made: files to be written, and its part of the page.
 pub struct Product {
     /// Name and content of each file.
-    pub files: Vec<(String, String)>,
+    pub files: Vec<(String, Vec<u8>)>,
     /// Its part of the page.
     pub section: Section,
     /// Its verdicts.
@@ -25,45 +28,98 @@ pub struct Product {
 /// The directory of the whole report, below `target/`.
 pub const REPORT: &str = "report";
 
-/// Every study of the report, in its order.
-pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
-    Ok(vec![
-        of::<Convergence>(selection)?,
-        of::<DriftStudy>(selection)?,
-        of::<Rotation>(selection)?,
-        of::<Adequacy>(selection)?,
-        of::<Stability>(selection)?,
-    ])
+/// Claims, and where the rows come from that they were judged by.
+pub struct Judged {
+    /// Its verdicts.
+    pub claims: Vec<Claim>,
+    /// Where the rows come from.
+    pub manifest: Manifest,
 }
 
-/// Runs one study and makes all that follows from its rows.
-///
-/// # Errors
-/// Rows or figures that have no form as text.
-pub fn of<S: Study>(selection: &mut Selection) -> Result<Product, Error> {
-    if let Some(label) = &mut selection.progress.label {
-        S::ID.clone_into(label);
+/// Where rows come from, and in which form charts are wanted.
+pub struct Source {
+    rows: Rows,
+    format: Format,
+    manifest: Manifest,
+}
+
+enum Rows {
+    Measured(Box<Selection>),
+    Files(PathBuf),
+}
+
+impl Source {
+    /// What the flags ask for.
+    ///
+    /// # Errors
+    /// Bad input, named with its place and its remedy.
+    pub fn of(common: &Common) -> Result<Self, Error> {
+        if common.format != Format::Svg && !reports::DRAWS_PNG {
+            let message = "this program draws no PNG; build it with `cargo build --release --features png`";
+            return Err(Error::plan("--format", message));
+        }
+        let selection = common.selection()?;
+        let (rows, manifest) = match &common.from {
+            Some(directory) => (Rows::Files(directory.clone()), Manifest::read(directory)?),
+            None => (Rows::Measured(Box::new(selection)), Manifest::of(&common.plan)),
+        };
+        Ok(Source { rows, format: common.format, manifest })
     }
-    from_rows::<S>(&S::measure(selection))
+
+    fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
+        match &mut self.rows {
+            Rows::Measured(selection) => {
+                if let Some(label) = &mut selection.progress.label {
+                    S::ID.clone_into(label);
+                }
+                Ok(S::measure(selection))
+            }
+            Rows::Files(directory) => {
+                let path = directory.join(format!("{}.csv", S::ID));
+                Ok(reports::read_csv(&provenance::read(&path)?, &path.display().to_string())?)
+            }
+        }
+    }
+
+    /// Measures or reads the rows of one study and makes all that follows from them.
+    ///
+    /// # Errors
+    /// Rows that cannot be read, or that have no form as text; figures that cannot be drawn.
+    pub fn product<S: Study>(&mut self) -> Result<Product, Error> {
+        from_rows::<S>(&self.rows::<S>()?, self.format)
+    }
+
+    /// Every study of the report, in its order.
+    ///
+    /// # Errors
+    /// As [`Self::product`].
+    pub fn all(&mut self) -> Result<Vec<Product>, Error> {
+        Ok(vec![
+            self.product::<Convergence>()?,
+            self.product::<DriftStudy>()?,
+            self.product::<Rotation>()?,
+            self.product::<Adequacy>()?,
+            self.product::<Stability>()?,
+        ])
+    }
 }
 
 /// All that follows from the rows of a study, without running anything.
 ///
 /// # Errors
 /// Rows or figures that have no form as text.
-pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
-    let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?)];
+pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, Error> {
+    let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?.into_bytes())];
     let claims = S::claims(rows);
     let claims_csv = format!("{}-claims.csv", S::ID);
-    files.push((claims_csv, reports::write_csv(&claims)?));
+    files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
     let (mut blocks, mut linked) = (Vec::new(), Vec::new());
-    for figure in S::figures(rows) {
-        let svg = reports::svg(&figure)?;
-        files.push((format!("{}.svg", figure.id), svg.clone()));
+    for (figure, svg, drawn) in drawn(S::figures(rows), format)? {
+        files.extend(drawn);
         if S::is_on_page(&figure) {
             blocks.push(Block::Figure { figure, svg });
         } else {
-            linked.push((figure.title, format!("{}.svg", figure.id)));
+            linked.push((figure.title, format!("{}.{}", figure.id, format.ending())));
         }
     }
     if !linked.is_empty() {
@@ -71,33 +127,66 @@ pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
     }
     blocks.push(Block::Claims(claims.clone()));
     for Derived { name, caption, csv, table } in S::tables(rows)? {
-        files.push((format!("{name}.csv"), csv));
+        files.push((format!("{name}.csv"), csv.into_bytes()));
         blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
     let section = Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks };
     Ok(Product { files, section, claims })
 }
 
-/// Runs one study and writes its files.
-///
-/// # Errors
-/// Bad input, or an output that cannot be written.
-pub fn study<S: Study>(common: &Common) -> Result<Vec<Claim>, Error> {
-    let mut selection = common.selection()?;
-    let out = OutputDir::create(common.out(S::ID))?;
-    let product = of::<S>(&mut selection)?;
-    out.write_all(&product.files)?;
-    Ok(product.claims)
+/// A figure, its drawing for the page, and its files.
+type Drawn = (Figure, String, Vec<(String, Vec<u8>)>);
+
+fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
+    let draw = |figure: Figure| {
+        let svg = reports::svg(&figure)?;
+        let mut files = Vec::new();
+        if format != Format::Png {
+            files.push((format!("{}.svg", figure.id), svg.clone().into_bytes()));
+        }
+        if format != Format::Svg {
+            files.push((format!("{}.png", figure.id), reports::png(&svg, &figure.id)?));
+        }
+        Ok((figure, svg, files))
+    };
+    figures.into_par_iter().map(draw).collect()
 }
 
-/// Runs every study and writes the report.
+/// Makes what the flags ask for of one study and writes its files.
 ///
 /// # Errors
 /// Bad input, or an output that cannot be written.
-pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
-    let mut selection = common.selection()?;
+pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
+    let mut source = Source::of(common)?;
+    let out = OutputDir::create(common.out(S::ID))?;
+    let Product { files, claims, .. } = source.product::<S>()?;
+    write(&out, common, files, &source.manifest)?;
+    Ok(Judged { claims, manifest: source.manifest })
+}
+
+/// Writes the files with plan and manifest, or of the files the charts alone.
+fn write(
+    out: &OutputDir,
+    common: &Common,
+    mut files: Vec<(String, Vec<u8>)>,
+    manifest: &Manifest,
+) -> Result<(), Error> {
+    files.push((provenance::PLAN.to_owned(), manifest.plan.to_toml()?.into_bytes()));
+    files.push((provenance::MANIFEST.to_owned(), manifest.to_json()?.into_bytes()));
+    if common.figures_only {
+        files.retain(|(name, _)| name.ends_with(".svg") || name.ends_with(".png"));
+    }
+    Ok(out.write_all(&files)?)
+}
+
+/// Makes the whole report and writes it.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn report(common: &Common) -> Result<Judged, Error> {
+    let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(REPORT))?;
-    let products = all(&mut selection)?;
+    let products = source.all()?;
     let (mut files, mut sections, mut claims) = (Vec::new(), Vec::new(), Vec::new());
     for product in products {
         files.extend(product.files);
@@ -108,14 +197,13 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
         title: "How accurate is a fixed step?".to_owned(),
         lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
             .to_owned(),
-        findings: findings(&claims, &files),
+        findings: findings(&claims, &sections),
         sections,
-        footer: provenance::lines(common),
+        footer: source.manifest.lines(),
     };
-    files.push(("manifest.json".to_owned(), provenance::manifest(common)));
-    files.push(("index.html".to_owned(), page.html()?));
-    out.write_all(&files)?;
-    Ok(claims)
+    files.push(("index.html".to_owned(), page.html()?.into_bytes()));
+    write(&out, common, files, &source.manifest)?;
+    Ok(Judged { claims, manifest: source.manifest })
 }
 
 /// What a busy reader should take away: a title, the claim that carries it, and the chart that shows it.
@@ -149,10 +237,11 @@ const FINDINGS: [(&str, &str, &str); 6] = [
 ];
 
 /// The findings whose claim was made; a claim that broke is told as broken.
-fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
+fn findings(claims: &[Claim], sections: &[Section]) -> Vec<Finding> {
     let finding = |&(title, id, figure): &(&str, &str, &str)| {
         let claim = claims.iter().find(|claim| claim.id == id || claim.id.starts_with(&format!("{id}.")))?;
-        let drawn = files.iter().any(|(name, _)| name.strip_suffix(".svg") == Some(figure));
+        let mut blocks = sections.iter().flat_map(|section| &section.blocks);
+        let drawn = blocks.any(|block| matches!(block, Block::Figure { figure: on_page, .. } if on_page.id == figure));
         Some(Finding {
             title: title.to_owned(),
             text: format!("{}: {} (theory: {}) – {}.", claim.statement, claim.measured, claim.theory, claim.verdict),
@@ -160,40 +249,4 @@ fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
         })
     };
     FINDINGS.iter().filter_map(finding).collect()
-}
-
-/// A short table: how many claims of each study hold, and every one that does not.
-pub fn summary(claims: &[Claim]) -> String {
-    if claims.is_empty() {
-        return verdicts(claims);
-    }
-    let mut table = Table::new(&["study", "holds", "broken", "not tested"], &["holds", "broken", "not tested"]);
-    for study in claims.chunk_by(|a, b| a.study == b.study) {
-        let counts = reports::claim::counts(study);
-        let numbers = [counts.holds, counts.broken, counts.not_tested].map(|n| n.to_string());
-        table.push(std::iter::once(study[0].study.clone()).chain(numbers));
-    }
-    let broken = broken(claims);
-    if broken.rows.is_empty() { table.to_text() } else { format!("{}\n{}", broken.to_text(), table.to_text()) }
-}
-
-fn broken(claims: &[Claim]) -> Table {
-    let mut table = Table::new(&["broken claim", "theory", "measured", "bound"], &[]);
-    for claim in claims.iter().filter(|claim| claim.verdict == reports::Verdict::Broken) {
-        table.push([&claim.id, &claim.theory, &claim.measured, &claim.bound].map(String::clone));
-    }
-    table
-}
-
-/// Every claim with its verdict.
-pub fn verdicts(claims: &[Claim]) -> String {
-    if claims.is_empty() {
-        return "no claim is made about this selection; its tables and charts are written\n".to_owned();
-    }
-    let mut table = Table::new(&["claim", "theory", "measured", "verdict"], &[]);
-    for claim in claims {
-        let verdict = format!("{} {}", claim.verdict.sign(), claim.verdict);
-        table.push([&claim.id, &claim.theory, &claim.measured, &verdict].map(String::clone));
-    }
-    table.to_text()
 }

@@ -33,6 +33,10 @@ pub trait Study {
 
     /// The name: of the binary, and of the CSV.
     const ID: &'static str;
+    /// What its binary does, in one line.
+    const ABOUT: &'static str = Self::TITLE;
+    /// Command lines worth trying, one a line.
+    const EXAMPLES: &'static str = Self::ID;
     /// The question it answers.
     const TITLE: &'static str;
     /// How it answers it, for a reader of the report.

@@ -45,8 +45,8 @@ pub(super) fn palette(index: usize) -> RGBColor {
 
 /// The name the drawing gives for its letters; the embedded font is registered under it, so that what is measured is
 /// what is meant. Verdana has nearly the same widths.
-const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
-static FONT: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
+pub(crate) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
+pub(crate) static FONT: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
 
 /// Makes the embedded font known to the drawing library; no font of the machine is ever asked for.
 pub(super) fn prepare_font() -> Result<(), String> {

@@ -19,6 +19,8 @@ mod triangle;
 use crate::{Axis, AxisName, Error, Figure, Layer, Scale};
 use axis::AxisMap;
 use canvas::{CENTER, Canvas, Frame, GREY, INK, LEFT, Rect, UNITS, font, stroke, text_width, units, wrap};
+#[cfg(feature = "png")]
+pub(crate) use canvas::{FAMILY, FONT};
 use plotters::prelude::*;
 
 /// What the drawing library says when it refuses.

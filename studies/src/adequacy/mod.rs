@@ -53,6 +53,10 @@ pub struct Adequacy;
 impl Study for Adequacy {
     type Row = Row;
     const ID: &'static str = "adequacy";
+    const ABOUT: &'static str =
+        "Compares models of a scene, from the least to the full one, with the full exact motion";
+    const EXAMPLES: &'static str = "adequacy --scene heavy-top
+        adequacy --scene pendulum --scene kepler --out /tmp/adequacy";
     const TITLE: &'static str = "Which terms does a scene need?";
     const INTRO: &'static str = "A model that leaves a term out saves work in every step, and is wrong by an amount that no \
         step size mends. For each scene models are set beside each other, from the least to the full one, and compared with the \

@@ -76,6 +76,11 @@ pub struct Convergence;
 impl Study for Convergence {
     type Row = Row;
     const ID: &'static str = "convergence";
+    const ABOUT: &'static str = "Sweeps the step on scenes with exact solutions and measures the order of convergence";
+    const EXAMPLES: &'static str = "convergence --scene oscillator --method rk4
+        convergence --scene torque-free-spin --precision f64 --out /tmp/spin
+        convergence --scene oscillator --set stiffness=24 --steps 64,128,256,512
+        convergence --from target/convergence --format both";
     const TITLE: &'static str = "How wrong is it? Convergence";
     const INTRO: &'static str = "Each method runs each scene with a step that is halved again and again, in three precisions, \
         and is compared with the exact motion. The slope of error against step is the observed order; where the slope ends \

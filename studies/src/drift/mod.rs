@@ -116,6 +116,11 @@ pub struct DriftStudy;
 impl Study for DriftStudy {
     type Row = Row;
     const ID: &'static str = "drift";
+    const ABOUT: &'static str =
+        "Follows energy, momenta and the quaternion's norm over a long run and names the law of their growth";
+    const EXAMPLES: &'static str = "drift --scene oscillator --method rk4
+        drift --scene torque-free-spin --precision f64 --out /tmp/spin
+        drift --scene oscillator --set stiffness=24";
     const TITLE: &'static str = "What is lost over a long run? Drift";
     const INTRO: &'static str = "Energy, momenta and the quaternion's norm are followed for a thousand natural time scales \
         of each scene, 32 steps each. The law by which an error grows tells more than its size: a bounded error stays harmless, \

@@ -29,6 +29,10 @@ pub struct Rotation;
 impl Study for Rotation {
     type Row = Row;
     const ID: &'static str = "rotation";
+    const ABOUT: &'static str =
+        "Compares every scheme in use for rigid bodies: error, order, drift, nutation, where the body ends up";
+    const EXAMPLES: &'static str = "rotation --scene torque-free-spin --scene heavy-top
+        rotation --method semi-implicit-euler --out /tmp/rotation";
     const TITLE: &'static str = "What should a rigid body store, and how should it step?";
     const INTRO: &'static str = "Engines store the angular velocity in the world or in the body frame, or the angular \
         momentum; they advance the attitude by the exponential map or by a normalised linear step; and they treat the \

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use clap::Args;
 use faer::fx128;
 use integrator::Real;
 
@@ -9,6 +10,7 @@ use super::amplification;
 use super::bisect::{Found, bracket};
 use super::displaced::Stepping;
 use super::limits;
+use crate::cli::{Common, Ending};
 use crate::error::Error;
 use crate::observation::Value;
 use crate::run::{Outcome, Precision, Run};
@@ -16,12 +18,39 @@ use crate::scene::AnyScene;
 use crate::study::Selection;
 
 /// A step to be judged.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "What to ask")]
 pub struct Question {
-    /// The step in question, s.
+    /// A step to be judged, s
+    #[arg(long = "step", value_name = "S", value_parser = seconds_a_step, allow_hyphen_values = true)]
     pub step_s: Option<f64>,
-    /// Frames a second that a simulation has to keep: how many substeps does each need?
+    /// Frames a second: how many substeps does each need?
+    #[arg(long = "rate", value_name = "HZ", value_parser = frames_a_second, allow_hyphen_values = true)]
     pub rate_hz: Option<f64>,
+}
+
+fn seconds_a_step(text: &str) -> Result<f64, String> {
+    positive(text, "seconds, such as 0.01")
+}
+
+fn frames_a_second(text: &str) -> Result<f64, String> {
+    positive(text, "frames a second, such as 60")
+}
+
+fn positive(text: &str, such_as: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+    number.ok_or_else(|| format!("not a positive number; give {such_as}"))
+}
+
+/// The answer, where the flags put a question: a step, a rate, or a scene with a method.
+pub fn ask(common: &Common, question: &Question) -> Option<Result<Ending, Error>> {
+    let plan = &common.plan;
+    let asked =
+        question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
+    asked.then(|| {
+        let Answer { text, stable } = answer(&common.selection()?, *question)?;
+        Ok(Ending { text, note: None, code: u8::from(!stable) })
+    })
 }
 
 /// What is said, and whether every step asked about is stable.

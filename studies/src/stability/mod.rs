@@ -134,6 +134,12 @@ pub struct Stability;
 impl Study for Stability {
     type Row = Row;
     const ID: &'static str = "stability";
+    const ABOUT: &'static str = "Measures the largest stable step of methods on scenes and holds it against theory. With --step or --rate, or with \
+        both --scene and --method, it answers for these and writes no files";
+    const EXAMPLES: &'static str =
+        "stability                                                      the whole study, into target/stability/
+        stability --scene damped-oscillator --method semi-implicit-euler --set zeta=0.1
+        stability --scene oscillator --method velocity-verlet --step 0.01 --rate 60";
     const TITLE: &'static str = "Where does it break? Stability limits";
     const INTRO: &'static str = "The largest stable step of every method on every linear scene, found by bisection on the \
         running scene and held against the amplification matrix and the closed forms; maps of where a method holds; and one \

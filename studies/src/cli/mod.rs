@@ -1,0 +1,125 @@
+//! The command line that all binaries share: flags, commands beside the run, and how a program ends.
+
+mod color;
+mod list;
+mod program;
+mod voice;
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use clap::{Args, ColorChoice, ValueEnum};
+
+pub use program::{Ending, NoFlags, Words, asking, main, report, start};
+pub use voice::print;
+
+use crate::error::Error;
+use crate::plan::Plan;
+use crate::study::Selection;
+use crate::sweep::Progress;
+
+/// What to run, where to write it, and what to print.
+#[derive(Args, Clone, Debug)]
+pub struct Common {
+    /// What to run.
+    #[command(flatten)]
+    pub plan: Plan,
+
+    /// Run the plan in this TOML file (each report has its plan.toml); flags given too take its place
+    #[arg(long = "plan", value_name = "FILE", help_heading = "What to run")]
+    pub plan_file: Option<PathBuf>,
+
+    /// Run nothing: draw, judge and write anew from the CSV rows in DIR, into DIR unless --out is given
+    #[arg(long, value_name = "DIR", help_heading = "What to run",
+        conflicts_with_all = ["scene", "method", "precision", "set", "steps", "quick", "plan_file"])]
+    pub from: Option<PathBuf>,
+
+    /// Directory for the results [default: target/report for the report, target/NAME for the study NAME]
+    #[arg(long, value_name = "DIR", help_heading = "What to write")]
+    pub out: Option<PathBuf>,
+
+    /// Form of the charts; PNG needs a program built with `--features png`
+    #[arg(long, value_enum, default_value = "svg", help_heading = "What to write")]
+    pub format: Format,
+
+    /// Write the charts and nothing else
+    #[arg(long, help_heading = "What to write")]
+    pub figures_only: bool,
+
+    /// Print Markdown: verdicts, broken claims, provenance; for a pull request's comment
+    #[arg(long, help_heading = "What to print", conflicts_with = "json")]
+    pub markdown: bool,
+
+    /// Print JSON: provenance, plan, counts, claims; for machines
+    #[arg(long, help_heading = "What to print")]
+    pub json: bool,
+
+    /// Colours; auto means on a terminal, and not where NO_COLOR is set
+    #[arg(long, value_enum, value_name = "WHEN", default_value = "auto", help_heading = "What to print")]
+    pub color: ColorChoice,
+
+    /// No progress and no notes on stderr
+    #[arg(long, help_heading = "What to print")]
+    pub quiet: bool,
+
+    /// Threads to run on; the results do not depend on it [default: all cores]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+}
+
+/// The form of a chart's file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Vector drawings, in which text is text.
+    #[default]
+    Svg,
+    /// Pixels, two for each of the SVG.
+    Png,
+    /// Each chart in both forms.
+    Both,
+}
+
+impl Format {
+    /// The ending of the file that a page links to.
+    pub(crate) fn ending(self) -> &'static str {
+        if self == Format::Png { "png" } else { "svg" }
+    }
+}
+
+/// More threads than any machine has cores.
+const MOST_THREADS: usize = 1024;
+
+fn threads(text: &str) -> Result<usize, String> {
+    let remedy = format!("give at least 1 and at most {MOST_THREADS}, or leave the flag out for all cores");
+    let number = text.trim().parse().ok().filter(|n| (1..=MOST_THREADS).contains(n));
+    number.ok_or_else(|| format!("not a number of threads; {remedy}"))
+}
+
+impl Common {
+    /// The directory for the results of the study (or the report) of that name.
+    pub fn out(&self, name: &str) -> PathBuf {
+        let default = || self.from.clone().unwrap_or_else(|| PathBuf::from("target").join(name));
+        self.out.clone().unwrap_or_else(default)
+    }
+
+    /// The scenes, methods and precisions that were asked for; and threads as many as asked for.
+    ///
+    /// # Errors
+    /// An unknown name, a parameter outside its range, or a number of steps that is zero.
+    pub fn selection(&self) -> Result<Selection, Error> {
+        if let Some(threads) = self.threads {
+            // Fails only if a pool exists already, and then its size was chosen by the same flag.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        }
+        let label = (!self.quiet && std::io::stderr().is_terminal()).then(String::new);
+        Ok(Selection { progress: Progress { label }, ..self.plan.selection()? })
+    }
+
+    /// The same with the plan of the file, where one is named.
+    fn with_plan_file(mut self) -> Result<Self, Error> {
+        if let Some(path) = &self.plan_file {
+            self.plan = Plan::read(path)?.overridden_by(self.plan);
+        }
+        Ok(self)
+    }
+}
