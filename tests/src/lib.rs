@@ -2,6 +2,7 @@
 
 mod decimal;
 mod difference;
+pub mod programs;
 pub mod reference;
 pub mod table;
 

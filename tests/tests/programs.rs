@@ -1,53 +1,9 @@
 //! The binaries as a user meets them: exit codes, messages, files. Numbers are other tests' business.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::sync::OnceLock;
+use std::process::Stdio;
 
-/// The binary of that name, of the same profile as this test. `cargo test` alone does not build the binaries of another
-/// package, so the first call does.
-fn program(name: &str) -> Command {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    let directory = BUILT.get_or_init(|| {
-        let test = std::env::current_exe().expect("a test knows its own path");
-        let directory = test.parent().and_then(Path::parent).expect("target/<profile>/deps/<test>").to_owned();
-        let profile = match directory.file_name().and_then(|name| name.to_str()) {
-            Some("debug") | None => "dev".to_owned(),
-            Some(name) => name.to_owned(),
-        };
-        let target = directory.parent().expect("the profile's directory is inside the target directory");
-        let status = Command::new(env!("CARGO"))
-            .args(["build", "--quiet", "--workspace", "--bins", "--profile", &profile])
-            .arg("--target-dir")
-            .arg(target)
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .status();
-        assert!(status.is_ok_and(|status| status.success()), "the binaries of `studies` do not build");
-        directory
-    });
-    let mut command = Command::new(directory.join(name));
-    command.env("NO_COLOR", "1").stdin(Stdio::null());
-    command
-}
-
-fn run(name: &str, arguments: &[&str], out: &Path) -> Output {
-    program(name).args(arguments).arg("--out").arg(out).output().expect("the binary was built with the workspace")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn files(directory: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut files: Vec<_> = fs::read_dir(directory)
-        .expect("the output directory exists")
-        .map(|entry| entry.expect("readable").path())
-        .map(|path| (path.clone(), fs::read(path).expect("readable")))
-        .collect();
-    files.sort();
-    files
-}
+use verification::programs::{PROGRAMS, assert_same, files, program, run, text};
 
 const SMALL: [&str; 3] = ["--quick", "--scene", "oscillator"];
 
@@ -61,7 +17,7 @@ fn report_writes_tables_charts_and_one_page() {
     for name in ["index.html", "manifest.json", "convergence.csv", "orders.csv", "drift.csv", "growth-laws.csv"] {
         assert!(out.path().join(name).is_file(), "{name} is missing");
     }
-    assert!(files(out.path()).iter().any(|(path, _)| path.extension().is_some_and(|e| e == "svg")));
+    assert!(files(out.path()).keys().any(|name| name.ends_with(".svg")));
 }
 
 // Fails if: rows are written in the order in which threads finish.
@@ -72,33 +28,39 @@ fn output_is_the_same_bytes_with_one_thread_and_with_two() {
     run("report", &[&SMALL[..], &["--threads", "2"]].concat(), two.path());
     let (one, two) = (files(one.path()), files(two.path()));
     assert!(one.len() > 5);
-    assert_eq!(one.len(), two.len());
-    for ((a, one), (b, two)) in one.iter().zip(&two) {
-        assert_eq!(a.file_name(), b.file_name());
-        assert!(one == two, "{} differs", a.display());
-    }
+    assert_same(&one, &two);
 }
 
 // Fails if: an error is reported with another exit code, or without the word that helps.
 #[test]
 fn wrong_input_is_named_with_its_remedy_and_ends_with_2() {
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 14] = [
         (&["--scene", "oscilator"], "did you mean 'oscillator'?"),
         (&["--method", "rk5"], "did you mean 'rk4'?"),
         (&["--precision", "f16"], "double-double"),
         (&["--steps", "0"], "at least 1 step"),
+        (&["--steps", "-3"], "at least 1 step"),
+        (&["--steps", "64,many"], "--steps 'many': not a number of steps; "),
         (&["--threads", "0"], "at least 1"),
+        (&["--threads", "-1"], "at least 1"),
+        (&["--color", "red"], "--color 'red': not one of its values; give auto, always, never"),
+        (&["--qick"], "--qick: no such flag or command; did you mean '--quick'?"),
+        (&["--json", "--markdown"], "cannot stand beside --markdown"),
         (&["--scene", "oscillator", "--set", "mass=-1"], "must be finite and > 0"),
         (&["--scene", "oscillator", "--set", "mass"], "NAME=VALUE"),
         (&["--scene", "torque-free-spin", "--set", "inertia=1,1,3"], "sum of the other two"),
     ];
-    for binary in ["report", "convergence", "drift", "rotation", "adequacy", "stability"] {
+    for binary in PROGRAMS {
         for (arguments, expected) in cases {
             let out = tempfile::tempdir().expect("a temporary directory");
             let output = run(binary, arguments, out.path());
             let message = text(&output.stderr);
             assert_eq!(output.status.code(), Some(2), "{binary} {arguments:?}: {message}");
             assert!(message.contains(expected), "{binary} {arguments:?}: {message}");
+            assert!(
+                message.starts_with("error: ") && message.lines().count() == 1,
+                "{binary} {arguments:?}: {message}"
+            );
             assert!(files(out.path()).is_empty(), "{binary} {arguments:?} wrote something");
         }
     }
@@ -152,7 +114,7 @@ fn nothing_but_notes_goes_to_stderr_when_piped() {
 
 #[test]
 fn help_shows_examples() {
-    for binary in ["report", "convergence", "drift", "rotation", "adequacy", "stability"] {
+    for binary in PROGRAMS {
         let output = program(binary).arg("--help").output().expect("the binary was built");
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stdout).contains("Examples:"), "{binary}");

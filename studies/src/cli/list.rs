@@ -21,11 +21,9 @@ pub(super) fn of(names: &[String]) -> Result<String, Error> {
 }
 
 fn scenes() -> String {
-    let mut table =
-        Table::new(&["scene (--scene)", "what moves", "parameters (--set); units and ranges: list SCENE"], &[]);
+    let mut table = Table::new(&["scene (--scene)", "what moves; its parameters (--set): list SCENE"], &[]);
     for scene in scenes::catalogue() {
-        let parameters = scene.scene().parameters().iter().map(|p| p.name).collect::<Vec<_>>().join(" ");
-        table.push([scene.id(), scene.scene().info().about, &parameters]);
+        table.push([scene.id(), scene.scene().info().about]);
     }
     table.to_text()
 }

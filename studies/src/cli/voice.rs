@@ -73,6 +73,7 @@ pub(super) fn of_flags(error: &clap::Error) -> Error {
             let other = other.split_whitespace().next().unwrap_or("the others");
             (flag.to_owned(), format!("cannot stand beside {other}; leave one of them out"))
         }
+        ErrorKind::MissingRequiredArgument => (flag.to_owned(), format!("is missing; {HELP}")),
         _ => {
             let said = error.to_string();
             let line = said.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();

@@ -17,7 +17,7 @@ use crate::run::{Outcome, Precision, Run};
 use crate::scene::AnyScene;
 use crate::study::Selection;
 
-/// A step to be judged.
+/// A step, or a rate, to be judged: positive numbers, as the flags are read.
 #[derive(Args, Clone, Copy, Debug, Default)]
 #[command(next_help_heading = "What to ask")]
 pub struct Question {
@@ -48,7 +48,7 @@ pub fn ask(common: &Common, question: &Question) -> Option<Result<Ending, Error>
     let asked =
         question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
     asked.then(|| {
-        let Answer { text, stable } = answer(&common.selection()?, *question)?;
+        let Answer { text, stable } = answer(&common.selection()?, *question);
         Ok(Ending { text, note: None, code: u8::from(!stable) })
     })
 }
@@ -63,17 +63,7 @@ pub struct Answer {
 }
 
 /// Answers for every chosen scene and method, in the first chosen precision (f64 if all are).
-///
-/// # Errors
-/// A step or a rate that is not a positive number.
-pub fn answer(selection: &Selection, question: Question) -> Result<Answer, Error> {
-    for (flag, value) in [("--step", question.step_s), ("--rate", question.rate_hz)] {
-        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            let message =
-                format!("{value} is not a positive number; give seconds (--step 0.01) or frames a second (--rate 60)");
-            return Err(Error::Plan { place: flag.to_owned(), message });
-        }
-    }
+pub fn answer(selection: &Selection, question: Question) -> Answer {
     let all = selection.precisions.len() == Precision::ALL.len();
     let precision = if all { Precision::F64 } else { selection.precisions[0] };
     let mut answer = Answer { text: String::new(), stable: true };
@@ -83,7 +73,7 @@ pub fn answer(selection: &Selection, question: Question) -> Result<Answer, Error
             one(&stepping, question, &mut answer);
         }
     }
-    Ok(answer)
+    answer
 }
 
 fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {

@@ -1,0 +1,69 @@
+//! A run that is interrupted leaves the report that was there before.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use verification::programs::{assert_same, files, program, run};
+
+/// A run without an end that could be waited for.
+const ENDLESS: [&str; 5] = ["--scene", "kepler", "--steps", "1000000000000", "--quiet"];
+
+fn start(arguments: &[&str], out: &Path) -> Child {
+    let mut command = program("report");
+    command.args(arguments).arg("--out").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().expect("the binary was built")
+}
+
+/// The files of a report; what was being written beside its place is hidden and is no part of it.
+fn visible(directory: &Path) -> BTreeMap<String, Vec<u8>> {
+    files(directory).into_iter().filter(|(name, _)| !name.starts_with('.')).collect()
+}
+
+// Fails if: Ctrl-C has another exit code, or anything is written before all is known.
+#[test]
+fn ctrl_c_ends_a_run_with_130_and_leaves_the_report() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    run("report", &["--quick", "--scene", "constant-force"], out.path());
+    let before = files(out.path());
+    assert!(before.contains_key("index.html"));
+    let mut child = start(&ENDLESS, out.path());
+    // Long enough for the handler to stand; the run itself goes on for years.
+    std::thread::sleep(Duration::from_secs(1));
+    let signal = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(signal.is_ok_and(|status| status.success()));
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert_same(&before, &files(out.path()));
+}
+
+// Fails if: a file is written in its place, or the files of one study before those of the next are known.
+#[test]
+fn a_killed_run_leaves_each_file_old_or_new_and_whole() {
+    let plan = ["--quick", "--scene", "constant-force", "--method", "rk4"];
+    let (fresh, out) = (tempfile::tempdir().expect("temporary"), tempfile::tempdir().expect("temporary"));
+    run("report", &plan, fresh.path());
+    run("report", &[&plan[..], &["--set", "mass=2"]].concat(), out.path());
+    let (new, old) = (visible(fresh.path()), visible(out.path()));
+    assert!(new.keys().eq(old.keys()) && new["convergence.csv"] != old["convergence.csv"]);
+    for milliseconds in (0..12).map(|i| 5 << i) {
+        let mut child = start(&plan, out.path());
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        let ended = child.try_wait().expect("it can be asked").is_some();
+        let _ = child.kill();
+        child.wait().expect("it ends");
+        let found = visible(out.path());
+        assert!(found.keys().eq(old.keys()), "after {milliseconds} ms: {:?}", found.keys());
+        for (name, bytes) in &found {
+            assert!(
+                *bytes == old[name] || *bytes == new[name],
+                "after {milliseconds} ms {name} is neither old nor new"
+            );
+        }
+        if ended {
+            return assert_same(&new, &found);
+        }
+    }
+    panic!("the run never ended, and so was never seen to replace the report");
+}
