@@ -33,43 +33,44 @@ pub(super) fn complain(error: &Error) {
     note(&format!("{style}error:{style:#} {error}"));
 }
 
-/// What the parser of the flags found wrong.
-pub(super) fn of_flags(error: &clap::Error) -> Error {
-    let text = |kind| match error.get(kind) {
+/// What the parser of the flags knows of an error.
+fn context(error: &clap::Error, kind: ContextKind) -> String {
+    match error.get(kind) {
         Some(ContextValue::String(text)) => text.clone(),
         Some(ContextValue::Strings(texts)) => texts.join(", "),
         _ => String::new(),
-    };
-    let flag = text(ContextKind::InvalidArg);
+    }
+}
+
+/// The name that was perhaps meant, as a question.
+fn meant(error: &clap::Error, kind: ContextKind) -> String {
+    let name = context(error, kind);
+    if name.is_empty() { name } else { format!("did you mean '{name}'? ") }
+}
+
+const HELP: &str = "--help shows what there is";
+
+/// What the parser of the flags found wrong.
+pub(super) fn of_flags(error: &clap::Error) -> Error {
+    use ContextKind as Kind;
+    let (flags, value) = (context(error, Kind::InvalidArg), context(error, Kind::InvalidValue));
     // `--steps <N,N,..>`: the flag is its first word.
-    let flag = flag.split_whitespace().next().unwrap_or("arguments");
-    let value = text(ContextKind::InvalidValue);
-    let near =
-        |kind| Some(text(kind)).filter(|t| !t.is_empty()).map_or_else(String::new, |t| format!("did you mean '{t}'? "));
-    const HELP: &str = "--help shows what there is";
+    let flag = flags.split_whitespace().next().unwrap_or("arguments");
+    let no_such = |kind| format!("no such flag or command; {}{HELP}", meant(error, kind));
     let (place, message) = match error.kind() {
         ErrorKind::ValueValidation => {
-            let reason = error.source().map_or_else(|| "not allowed; see --help".to_owned(), ToString::to_string);
+            let reason = error.source().map_or_else(|| format!("not allowed; {HELP}"), ToString::to_string);
             (format!("{flag} '{value}'"), reason)
         }
         ErrorKind::InvalidValue if value.is_empty() => (flag.to_owned(), format!("its value is missing; {HELP}")),
         ErrorKind::InvalidValue => {
-            let message = format!(
-                "not one of its values; {}give {}",
-                near(ContextKind::SuggestedValue),
-                text(ContextKind::ValidValue)
-            );
-            (format!("{flag} '{value}'"), message)
+            let (meant, values) = (meant(error, Kind::SuggestedValue), context(error, Kind::ValidValue));
+            (format!("{flag} '{value}'"), format!("not one of its values; {meant}give {values}"))
         }
-        ErrorKind::UnknownArgument => {
-            (flag.to_owned(), format!("no such flag or command; {}{HELP}", near(ContextKind::SuggestedArg)))
-        }
-        ErrorKind::InvalidSubcommand => {
-            let name = text(ContextKind::InvalidSubcommand);
-            (name, format!("no such flag or command; {}{HELP}", near(ContextKind::SuggestedSubcommand)))
-        }
+        ErrorKind::UnknownArgument => (flag.to_owned(), no_such(Kind::SuggestedArg)),
+        ErrorKind::InvalidSubcommand => (context(error, Kind::InvalidSubcommand), no_such(Kind::SuggestedSubcommand)),
         ErrorKind::ArgumentConflict => {
-            let other = text(ContextKind::PriorArg);
+            let other = context(error, Kind::PriorArg);
             let other = other.split_whitespace().next().unwrap_or("the others");
             (flag.to_owned(), format!("cannot stand beside {other}; leave one of them out"))
         }
