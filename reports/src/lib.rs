@@ -20,6 +20,7 @@ pub mod claim;
 pub mod error;
 pub mod figure;
 pub mod files;
+pub mod formula;
 pub mod page;
 pub mod plot;
 pub mod table;

@@ -29,7 +29,14 @@ fn page() -> Page {
     Page {
         title: words("Report"),
         lead: words("What it is."),
-        findings: vec![Finding { title: words("First"), text: words("It holds."), figure: Some(words("orders")) }],
+        links: vec![(words("Try it"), words("teach.html"))],
+        findings: vec![Finding {
+            title: words("First"),
+            number: words("3.98"),
+            text: words("It holds."),
+            figure: Some(words("orders")),
+            claim: Some(words("a")),
+        }],
         sections: vec![Section { id: words("convergence"), title: words("Convergence"), intro: words("How?"), blocks }],
         footer: vec![(words("rustc"), words("1.90 <stable>"))],
     }

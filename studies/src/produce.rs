@@ -108,6 +108,7 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
         title: "How accurate is a fixed step?".to_owned(),
         lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
             .to_owned(),
+        links: Vec::new(),
         findings: findings(&claims, &files),
         sections,
         footer: provenance::lines(common),
@@ -157,6 +158,7 @@ fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
             title: title.to_owned(),
             text: format!("{}: {} (theory: {}) – {}.", claim.statement, claim.measured, claim.theory, claim.verdict),
             figure: drawn.then(|| figure.to_owned()),
+            ..Finding::default()
         })
     };
     FINDINGS.iter().filter_map(finding).collect()

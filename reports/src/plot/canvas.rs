@@ -7,9 +7,9 @@ use super::axis::AxisMap;
 use super::clip::{Point, Window};
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::series::DashedLineSeries;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
+use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 /// Units of the drawing in a CSS pixel.
@@ -103,6 +103,27 @@ pub(super) fn stroke(color: impl Into<RGBAColor>, pixels: f64) -> ShapeStyle {
     color.into().stroke_width(units(pixels).max(1) as u32)
 }
 
+/// Greater than every width, dash and gap in units: what tells them apart in one number.
+const CODE: u32 = 100;
+
+/// The drawing with every width that tells the lengths of dash and gap taken apart.
+pub(super) fn with_dashes(drawing: &str) -> String {
+    const WIDTH: &str = "stroke-width=\"";
+    let mut parts = drawing.split(WIDTH);
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find('"').unwrap_or(0);
+        let code: u32 = part[..end].parse().unwrap_or(0);
+        let (dash, width) = (code / CODE, code % CODE);
+        let _ = write!(out, "{WIDTH}{width}");
+        if dash > 0 {
+            let _ = write!(out, "\" stroke-dasharray=\"{} {}", dash % CODE, dash / CODE);
+        }
+        out.push_str(&part[end..]);
+    }
+    out
+}
+
 /// A rectangle on the sheet, in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rect {
@@ -181,11 +202,11 @@ impl Canvas<'_> {
         self.root.draw(&PathElement::new(points, style))
     }
 
+    /// A line of dashes. The library would draw every dash as a line of its own; it is given one line whose width tells the
+    /// lengths of dash and gap, see [`with_dashes`].
     pub(super) fn dashed(&self, points: Vec<Pixel>, on: f64, off: f64, style: ShapeStyle) -> Drawn {
-        for dash in DashedLineSeries::new(points, units(on), units(off), style) {
-            self.root.draw(&dash)?;
-        }
-        Ok(())
+        let [on, off] = [on, off].map(|length| units(length).clamp(1, CODE as i32 - 1) as u32);
+        self.line(points, ShapeStyle { stroke_width: (off * CODE + on) * CODE + style.stroke_width, ..style })
     }
 
     pub(super) fn fill(&self, points: Vec<Pixel>, color: impl Into<RGBAColor>) -> Drawn {
