@@ -29,6 +29,7 @@ pub use claim::{Claim, Verdict, exit_code};
 pub use error::Error;
 pub use figure::{Axis, AxisName, Cells, Figure, Layer, Line, Marker, Palette, Scale, Series};
 pub use files::OutputDir;
+pub use formula::mathml;
 pub use page::{Block, Finding, Page, Section};
 pub use plot::svg;
 pub use table::{Align, Table, read_csv, write_csv};

@@ -183,8 +183,8 @@ impl Section {
     }
 
     fn claims(&self) -> Vec<&Claim> {
-        let claims = |block| if let Block::Claims(claims) = block { &claims[..] } else { &[] };
-        self.all_blocks().into_iter().flat_map(claims).collect()
+        let claims = self.all_blocks().into_iter().filter_map(|b| if let Block::Claims(claims) = b { Some(claims) } else { None });
+        claims.flatten().collect()
     }
 
     fn markup(&self) -> Result<Markup, Error> {

@@ -1,12 +1,13 @@
 //! From a plan to files: rows, tables, figures, claims, one page. Nothing is written before everything is known.
 
-use reports::{Block, Claim, Finding, OutputDir, Page, Section, Table};
+use reports::{Block, Claim, OutputDir, Section, Table};
 
 use crate::adequacy::Adequacy;
 use crate::cli::Common;
 use crate::convergence::Convergence;
 use crate::drift::DriftStudy;
 use crate::error::Error;
+use crate::page;
 use crate::provenance;
 use crate::rotation::Rotation;
 use crate::stability::Stability;
@@ -74,7 +75,7 @@ pub fn from_rows<S: Study>(rows: &[S::Row]) -> Result<Product, Error> {
         files.push((format!("{name}.csv"), csv));
         blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
-    let section = Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks };
+    let section = page::section::<S>(blocks);
     Ok(Product { files, section, claims })
 }
 
@@ -104,64 +105,12 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
         sections.push(product.section);
         claims.extend(product.claims);
     }
-    let page = Page {
-        title: "How accurate is a fixed step?".to_owned(),
-        lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
-            .to_owned(),
-        links: Vec::new(),
-        findings: findings(&claims, &files),
-        sections,
-        footer: provenance::lines(common),
-    };
+    let teach = files.iter().any(|(name, _)| name == page::TEACH);
+    let html = page::html(sections, &selection.scenes, teach, provenance::lines(common))?;
     files.push(("manifest.json".to_owned(), provenance::manifest(common)));
-    files.push(("index.html".to_owned(), page.html()?));
+    files.push(("index.html".to_owned(), html));
     out.write_all(&files)?;
     Ok(claims)
-}
-
-/// What a busy reader should take away: a title, the claim that carries it, and the chart that shows it.
-const FINDINGS: [(&str, &str, &str); 6] = [
-    ("Explicit Euler gains energy at every step", "drift.oscillator.explicit-euler.energy", "drift-oscillator-energy"),
-    (
-        "Semi-implicit Euler keeps it in a band, for ever",
-        "drift.oscillator.semi-implicit-euler.energy",
-        "drift-oscillator-energy",
-    ),
-    (
-        "A force that depends on the velocity takes that advantage away",
-        "drift.charged-particle/magnetic.semi-implicit-euler.energy",
-        "drift-charged-particle-magnetic-energy",
-    ),
-    (
-        "RK4 is worth its four evaluations where the motion is smooth",
-        "convergence.torque-free-spin.rk4.order",
-        "precision-torque-free-spin-attitude",
-    ),
-    (
-        "Without the gyroscopic term no step is small enough",
-        "rotation.semi-implicit-euler/without-gyroscopic-term.order-0",
-        "rotation-error-torque-free-spin",
-    ),
-    (
-        "A spinning body is not a spring: semi-implicit Euler gains energy",
-        "rotation.step-law.energy.asymmetric-body.semi-implicit-euler/body-omega",
-        "rotation-axis-start-near-most-inertia",
-    ),
-];
-
-/// The findings whose claim was made; a claim that broke is told as broken.
-fn findings(claims: &[Claim], files: &[(String, String)]) -> Vec<Finding> {
-    let finding = |&(title, id, figure): &(&str, &str, &str)| {
-        let claim = claims.iter().find(|claim| claim.id == id || claim.id.starts_with(&format!("{id}.")))?;
-        let drawn = files.iter().any(|(name, _)| name.strip_suffix(".svg") == Some(figure));
-        Some(Finding {
-            title: title.to_owned(),
-            text: format!("{}: {} (theory: {}) – {}.", claim.statement, claim.measured, claim.theory, claim.verdict),
-            figure: drawn.then(|| figure.to_owned()),
-            ..Finding::default()
-        })
-    };
-    FINDINGS.iter().filter_map(finding).collect()
 }
 
 /// A short table: how many claims of each study hold, and every one that does not.

@@ -92,7 +92,6 @@ fn drawn(figure: &Figure, svg: &str) -> Markup {
             (scroll(&figure.title, &PreEscaped(plot::inline(svg, &id))))
             figcaption { (figure.caption) }
             p.source {
-                a href={ (figure.id) ".svg" } { "SVG" } ". "
                 @if !figure.data.is_empty() { "Data: " a href=(figure.data) { (figure.data) } ". " }
                 @if !figure.command.is_empty() { "Made by " code { (figure.command) } }
             }
