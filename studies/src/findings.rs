@@ -2,7 +2,8 @@
 
 use reports::{Block, Claim, Finding, Section, Verdict};
 
-/// A finding before its numbers are known. `{0}`, `{1}`, .. stand for what the claims measured.
+/// A finding before its numbers are known. `{0}`, `{1}`, .. stand for what the claims measured, `{0:last}` for the last word
+/// of its first part, `{0:count}` for the number of its parts.
 struct Draft {
     title: &'static str,
     number: &'static str,
@@ -23,9 +24,9 @@ const DRAFTS: [Draft; 4] = [
     },
     Draft {
         title: "A spinning body is not a spring: there the advantage is gone, and without the gyroscopic term no step helps",
-        number: "order 0 without the gyroscopic term",
-        text: "Semi-implicit Euler, too, gains energy on a free asymmetric body: {0} of step h is added to T at every step, \
-               times h²/2. An engine that leaves the gyroscopic term out has an error that does not fall with the step: {1}.",
+        number: "order 0 on {1:count} scenes",
+        text: "Semi-implicit Euler, too, gains energy on a free asymmetric body, h²/2 times {0} in every step. An engine that \
+               leaves the gyroscopic term out makes an error that does not fall with the step at all, on {1:count} scenes.",
         claims: &[
             "rotation.step-law.energy.asymmetric-body.semi-implicit-euler/body-omega",
             "rotation.semi-implicit-euler/without-gyroscopic-term.order-0",
@@ -34,9 +35,9 @@ const DRAFTS: [Draft; 4] = [
     },
     Draft {
         title: "Halving the step halves an Euler's error and divides RK4's by 16, until rounding takes over",
-        number: "order {0}",
+        number: "order {0:last}",
         text: "Orders are measured in double-double, where rounding does not hide them. In f32 a step below a certain size \
-               makes the result worse; the semi-implicit step has order {1} on the same motion.",
+               makes the result worse; the semi-implicit step has order {1:last} on the same motion.",
         claims: &["convergence.torque-free-spin.rk4.order", "convergence.torque-free-spin.semi-implicit-euler.order"],
         figure: "precision-torque-free-spin-attitude",
     },
@@ -58,7 +59,7 @@ pub(crate) fn findings(sections: &[Section]) -> Vec<Finding> {
     let finding = |draft: &Draft| {
         let carrying: Vec<&Claim> = draft.claims.iter().map(find).collect::<Option<_>>()?;
         let filled = |text: &str| {
-            carrying.iter().enumerate().fold(text.to_owned(), |text, (i, claim)| text.replace(&format!("{{{i}}}"), &readable(&claim.measured)))
+            carrying.iter().enumerate().fold(text.to_owned(), |text, (i, claim)| with_measured(&text, i, &claim.measured))
         };
         let verdict = if carrying.iter().all(|claim| claim.verdict == Verdict::Holds) { "" } else { " A claim this rests on is broken or untested." };
         Some(Finding {
@@ -70,6 +71,15 @@ pub(crate) fn findings(sections: &[Section]) -> Vec<Finding> {
         })
     };
     DRAFTS.iter().filter_map(finding).collect()
+}
+
+/// The text with what the claim number `i` measured in its place.
+fn with_measured(text: &str, i: usize, measured: &str) -> String {
+    let parts: Vec<&str> = measured.split("; ").collect();
+    let last = parts.first().and_then(|part| part.split_whitespace().last()).unwrap_or_default();
+    text.replace(&format!("{{{i}}}"), &readable(measured))
+        .replace(&format!("{{{i}:last}}"), &readable(last))
+        .replace(&format!("{{{i}:count}}"), &parts.len().to_string())
 }
 
 /// The claims and the ids of the figures on the page.
@@ -101,7 +111,7 @@ fn readable(text: &str) -> String {
         }
         rest = &number[digits.len()..];
     }
-    (out + rest).replace("angular-velocity", "angular velocity")
+    (out + rest).replace(" .. ", " to ")
 }
 
 fn rounded(value: f64) -> String {
@@ -126,7 +136,7 @@ mod tests {
         assert_eq!(readable("rate 6.246950228e-2 1/s"), "rate 0.06247 1/s");
         assert_eq!(readable("in [9.997478023e-1, 1.031485804e0]"), "in [0.9997, 1.031]");
         assert_eq!(readable("box 4.441e-15; top -1.841e-6"), "box 4.441 × 10⁻¹⁵; top -1.841 × 10⁻⁶");
-        assert_eq!(readable("2.00000 .. 2.00542"), "2.000 .. 2.005");
+        assert_eq!(readable("2.00000 .. 2.00542"), "2.000 to 2.005");
         assert_eq!(readable("at 1024 still, rk4"), "at 1024 still, rk4");
     }
 }

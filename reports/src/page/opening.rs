@@ -73,17 +73,19 @@ impl Page {
     fn finding(&self, index: usize, finding: &Finding) -> Markup {
         let drawn = finding.figure.as_ref().and_then(|id| self.figure(id));
         html! {
-            h3 { (finding.title) }
-            @if !finding.number.is_empty() { p.number { (finding.number) } }
-            p { (finding.text) }
+            div {
+                h3 { (finding.title) }
+                @if !finding.number.is_empty() { p.number { (finding.number) } }
+                p { (finding.text) }
+                p.source {
+                    @if let Some(id) = &finding.claim { a href={ "#claim-" (id) } { "The claim" } ". " }
+                    @if let Some((figure, _)) = drawn { a href={ "#figure-" (figure.id) } { "The chart in its study" } "." }
+                }
+            }
             @if let Some((figure, svg)) = drawn {
                 div.scroll tabindex="0" role="region" aria-label=(figure.title) {
                     (PreEscaped(plot::inline(svg, &format!("finding-{index}"))))
                 }
-            }
-            p.source {
-                @if let Some(id) = &finding.claim { a href={ "#claim-" (id) } { "The claim" } ". " }
-                @if let Some((figure, _)) = drawn { a href={ "#figure-" (figure.id) } { "The chart in its study" } "." }
             }
         }
     }
