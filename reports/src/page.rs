@@ -136,7 +136,10 @@ impl Page {
 
     fn check(&self) -> Result<(), Error> {
         let blocks = self.blocks();
-        let figures = unique("figure", blocks.iter().filter_map(|b| if let Block::Figure { figure, .. } = b { Some(&figure.id) } else { None }))?;
+        let figures = unique(
+            "figure",
+            blocks.iter().filter_map(|b| if let Block::Figure { figure, .. } = b { Some(&figure.id) } else { None }),
+        )?;
         let groups = blocks.iter().filter_map(|b| if let Block::Group { id, .. } = b { Some(id) } else { None });
         unique("section", self.sections.iter().map(|section| &section.id).chain(groups))?;
         let claims = unique("claim", self.claims().into_iter().map(|claim| &claim.id))?;
@@ -183,7 +186,10 @@ impl Section {
     }
 
     fn claims(&self) -> Vec<&Claim> {
-        let claims = self.all_blocks().into_iter().filter_map(|b| if let Block::Claims(claims) = b { Some(claims) } else { None });
+        let claims = self
+            .all_blocks()
+            .into_iter()
+            .filter_map(|b| if let Block::Claims(claims) = b { Some(claims) } else { None });
         claims.flatten().collect()
     }
 

@@ -55,13 +55,21 @@ const DRAFTS: [Draft; 4] = [
 pub(crate) fn findings(sections: &[Section]) -> Vec<Finding> {
     let (mut claims, mut drawn) = (Vec::new(), Vec::new());
     sections.iter().for_each(|section| look(&section.blocks, &mut claims, &mut drawn));
-    let find = |id: &&str| claims.iter().copied().find(|claim| claim.id == **id || claim.id.starts_with(&format!("{id}.")));
+    let find =
+        |id: &&str| claims.iter().copied().find(|claim| claim.id == **id || claim.id.starts_with(&format!("{id}.")));
     let finding = |draft: &Draft| {
         let carrying: Vec<&Claim> = draft.claims.iter().map(find).collect::<Option<_>>()?;
         let filled = |text: &str| {
-            carrying.iter().enumerate().fold(text.to_owned(), |text, (i, claim)| with_measured(&text, i, &claim.measured))
+            carrying
+                .iter()
+                .enumerate()
+                .fold(text.to_owned(), |text, (i, claim)| with_measured(&text, i, &claim.measured))
         };
-        let verdict = if carrying.iter().all(|claim| claim.verdict == Verdict::Holds) { "" } else { " A claim this rests on is broken or untested." };
+        let verdict = if carrying.iter().all(|claim| claim.verdict == Verdict::Holds) {
+            ""
+        } else {
+            " A claim this rests on is broken or untested."
+        };
         Some(Finding {
             title: draft.title.to_owned(),
             number: filled(draft.number),

@@ -34,11 +34,15 @@ pub fn source_of_method(method: MethodId) -> &'static str {
         MethodId::SemiImplicitEuler => {
             "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), I.1.2 (1.9)"
         }
-        MethodId::VelocityVerlet => "L. Verlet, Phys. Rev. 159 (1967) 98; W. Swope et al., J. Chem. Phys. 76 (1982) 637",
+        MethodId::VelocityVerlet => {
+            "L. Verlet, Phys. Rev. 159 (1967) 98; W. Swope et al., J. Chem. Phys. 76 (1982) 637"
+        }
         MethodId::Rk4 => {
             "W. Kutta, Z. Math. Phys. 46 (1901) 435; on rotations H. Munthe-Kaas, B. Owren, Phil. Trans. R. Soc. A 357 (1999) 957"
         }
-        MethodId::ImplicitEuler => "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996), IV.1 (1.10)",
+        MethodId::ImplicitEuler => {
+            "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996), IV.1 (1.10)"
+        }
         MethodId::ImplicitMidpoint => {
             "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), I.1.1 (1.7)"
         }
@@ -70,10 +74,14 @@ pub fn of_rigid_step(step: RigidStep) -> &'static [&'static str] {
 /// The equation of motion that a model of a rigid body integrates.
 pub fn of_storage(storage: Storage) -> &'static str {
     match storage {
-        Storage::WorldOmega => r"I_w\,\dot\omega = \tau - \omega\times I_w\omega,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q",
+        Storage::WorldOmega => {
+            r"I_w\,\dot\omega = \tau - \omega\times I_w\omega,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
+        }
         Storage::BodyOmega => r"I\,\dot\omega = \tau + I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
         Storage::WorldMomentum => r"\dot L = \tau,\quad \omega = R\,I^{-1} R^{T} L,\quad \dot q = \tfrac12\,\omega\,q",
-        Storage::WithoutGyroscopicTerm => r"I_w\,\dot\omega = \tau,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q",
+        Storage::WithoutGyroscopicTerm => {
+            r"I_w\,\dot\omega = \tau,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
+        }
     }
 }
 

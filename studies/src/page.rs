@@ -35,7 +35,8 @@ pub fn html(
 ) -> Result<String, Error> {
     let findings = findings(&sections);
     sections.push(methods_and_scenes(scenes, &sections));
-    let links = has_teaching_page.then(|| ("Drag the step and watch".to_owned(), TEACH.to_owned())).into_iter().collect();
+    let links =
+        has_teaching_page.then(|| ("Drag the step and watch".to_owned(), TEACH.to_owned())).into_iter().collect();
     let page = Page {
         title: "How accurate is a fixed step?".to_owned(),
         lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known: how wrong is \
@@ -62,7 +63,9 @@ pub(crate) fn section<S: Study>(mut blocks: Vec<Block>) -> Section {
 fn scene_named(name: &str) -> Option<&'static str> {
     let dashed = name.replace('/', "-");
     let base = |id: &'static str| id.split('/').next().unwrap_or(id);
-    let fits = |id: &str| dashed.strip_prefix(&id.replace('/', "-")).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'));
+    let fits = |id: &str| {
+        dashed.strip_prefix(&id.replace('/', "-")).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    };
     let known = scenes::IDS.iter().copied().chain(scenes::IDS.iter().copied().map(base));
     known.filter(|id| fits(id)).max_by_key(|id| id.len())
 }
@@ -94,10 +97,15 @@ pub(crate) fn by_scene(study: &str, blocks: Vec<Block>) -> Vec<Block> {
             }
             Block::Table { caption, table, csv } if table.headers.first().is_some_and(|head| head == "scene") => {
                 let Table { headers, align, rows } = table;
-                let rest = split(rows, |row| row.first().and_then(|cell| scene_named(cell)), |scene, rows| {
-                    let table = Table { headers: headers.clone(), align: align.clone(), rows };
-                    give(scene, Block::Table { caption: caption.clone(), table, csv: csv.clone() });
-                });
+                let rest = split(
+                    rows,
+                    |row| row.first().and_then(|cell| scene_named(cell)),
+                    |scene, rows| {
+                        let table =
+                            without_scene(Table { headers: headers.clone(), align: align.clone(), rows }, scene);
+                        give(scene, Block::Table { caption: caption.clone(), table, csv: csv.clone() });
+                    },
+                );
                 let table = Table { headers: headers.clone(), align: align.clone(), rows: rest };
                 common.extend((!table.rows.is_empty()).then_some(Block::Table { caption, table, csv }));
             }
@@ -107,7 +115,8 @@ pub(crate) fn by_scene(study: &str, blocks: Vec<Block>) -> Vec<Block> {
             },
             Block::Links { caption, files } => {
                 let scene = |(_, file): &(String, String)| scene_of_figure(file.trim_end_matches(".svg"));
-                let rest = split(files, scene, |scene, files| give(scene, Block::Links { caption: caption.clone(), files }));
+                let rest =
+                    split(files, scene, |scene, files| give(scene, Block::Links { caption: caption.clone(), files }));
                 common.extend((!rest.is_empty()).then_some(Block::Links { caption, files: rest }));
             }
             other => common.push(other),
@@ -119,8 +128,22 @@ pub(crate) fn by_scene(study: &str, blocks: Vec<Block>) -> Vec<Block> {
     common
 }
 
+/// The table without its first column where that says nothing but the scene.
+fn without_scene(mut table: Table, scene: &str) -> Table {
+    if table.rows.iter().all(|row| row.first().is_some_and(|cell| cell == scene)) {
+        table.headers.remove(0);
+        table.align.remove(0);
+        table.rows.iter_mut().for_each(|row| drop(row.remove(0)));
+    }
+    table
+}
+
 /// Hands the parts that belong to a scene to `give`, together for each scene, and gives back the others.
-fn split<T>(all: Vec<T>, scene: impl Fn(&T) -> Option<&'static str>, mut give: impl FnMut(&'static str, Vec<T>)) -> Vec<T> {
+fn split<T>(
+    all: Vec<T>,
+    scene: impl Fn(&T) -> Option<&'static str>,
+    mut give: impl FnMut(&'static str, Vec<T>),
+) -> Vec<T> {
     let mut rest = Vec::new();
     let mut parts: Vec<(&'static str, Vec<T>)> = Vec::new();
     for one in all {
@@ -137,7 +160,8 @@ fn split<T>(all: Vec<T>, scene: impl Fn(&T) -> Option<&'static str>, mut give: i
 }
 
 fn group(study: &str, scene: &str, blocks: Vec<Block>) -> Block {
-    let claims: Vec<&Claim> = blocks.iter().flat_map(|b| if let Block::Claims(claims) = b { &claims[..] } else { &[] }).collect();
+    let claims: Vec<&Claim> =
+        blocks.iter().flat_map(|b| if let Block::Claims(claims) = b { &claims[..] } else { &[] }).collect();
     let charts = blocks.iter().filter(|block| matches!(block, Block::Figure { .. })).count();
     let counts = reports::claim::counts(claims);
     let parts = [(counts.broken, "broken"), (counts.holds, "hold"), (counts.not_tested, "not tested")];
@@ -197,7 +221,10 @@ fn step_group(step: RigidStep) -> Block {
 
 fn stored() -> Block {
     let one = |storage: Storage| {
-        [Block::Text(format!("{}:", scene_title(storage.id()))), Block::Formula(formulas::of_storage(storage).to_owned())]
+        [
+            Block::Text(format!("{}:", scene_title(storage.id()).replace("omega", "ω"))),
+            Block::Formula(formulas::of_storage(storage).to_owned()),
+        ]
     };
     Block::Group {
         id: "method-storage".to_owned(),
@@ -232,7 +259,9 @@ fn scene_group(any: &dyn AnyScene, studies: &[Section]) -> Block {
     }
     let groups = studies.iter().flat_map(|section| section.blocks.iter().map(move |block| (section, block)));
     let seen = groups.filter_map(|(section, block)| match block {
-        Block::Group { id: group, .. } if *group == anchor(&section.id, id) => Some((section.title.clone(), format!("#{group}"))),
+        Block::Group { id: group, .. } if *group == anchor(&section.id, id) => {
+            Some((section.title.clone(), format!("#{group}")))
+        }
         _ => None,
     });
     let files: Vec<_> = seen.collect();
@@ -250,8 +279,8 @@ fn theory(any: &dyn AnyScene) -> Table {
             let theory = any.scene().theory(method, quantity);
             let order = match theory.order {
                 ExpectedOrder::Exact => "exact".to_owned(),
-                ExpectedOrder::Of(order) => short(Some(order)),
-                ExpectedOrder::Envelope(order) => format!("at least {}", short(Some(order))),
+                ExpectedOrder::Of(order) => order.to_string(),
+                ExpectedOrder::Envelope(order) => format!("at least {order}"),
             };
             let constant = theory.constant.map_or_else(String::new, |constant| short(Some(constant)));
             table.push([method.title(), quantity.id(), &order, &constant, theory.reason]);

@@ -27,15 +27,15 @@ pub(super) const INK: RGBColor = RGBColor(0x26, 0x26, 0x26);
 pub(super) const GREY: RGBColor = RGBColor(0x5C, 0x5C, 0x5C);
 
 /// Okabe and Ito, "Color Universal Design" (2008), told apart with any colour vision; its yellow, too light for a line
-/// on white, is replaced by a dark purple, its orange and sky blue are darkened for the same reason.
+/// on white, is replaced by a dark purple, its orange, pink and sky blue are darkened for the same reason.
 pub(super) const PALETTE: [RGBColor; 8] = [
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0x00, 0x9E, 0x73),
-    RGBColor(0xCC, 0x79, 0xA7),
+    RGBColor(0xC7, 0x6F, 0xA0),
     RGBColor(0x1A, 0x1A, 0x1A),
     RGBColor(0xB8, 0x86, 0x00),
-    RGBColor(0x3B, 0xA3, 0xD9),
+    RGBColor(0x2E, 0x97, 0xCC),
     RGBColor(0x6A, 0x3D, 0x9A),
 ];
 

@@ -64,7 +64,8 @@ impl Joined {
     fn add(&mut self, out: &mut String, look: String, path: &str) {
         let is_edge = look.contains("sw") || look.contains("fw");
         let same = |place: &Option<(String, String)>| place.as_ref().is_none_or(|(known, _)| *known == look);
-        let fits = if is_edge { same(&self.edge) && (self.edge.is_some() || self.top.is_none()) } else { same(&self.top) };
+        let fits =
+            if is_edge { same(&self.edge) && (self.edge.is_some() || self.top.is_none()) } else { same(&self.top) };
         if !fits {
             self.flush(out);
         }
@@ -118,7 +119,10 @@ fn look(element: &Element<'_>) -> String {
 fn circle(element: &Element<'_>) -> (String, String) {
     let (x, y, r) = (element.unit("cx"), element.unit("cy"), element.unit("r"));
     match element.get("fill").filter(|&fill| fill != "none") {
-        Some(fill) => (format!("{} stroke-linecap=round stroke-width={}", painted('s', "stroke", fill), 2 * r), format!("M{x} {y}h0")),
+        Some(fill) => (
+            format!("{} stroke-linecap=round stroke-width={}", painted('s', "stroke", fill), 2 * r),
+            format!("M{x} {y}h0"),
+        ),
         None => (look(element), format!("M{} {y}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 {} 0", x - r, 2 * r, -2 * r)),
     }
 }
@@ -132,7 +136,8 @@ fn name(color: &str) -> Option<String> {
     let is = |known: RGBColor| color.eq_ignore_ascii_case(&hex(known));
     let palette = || (0..PALETTE.len()).find(|&i| is(PALETTE[i])).map(|i| i.to_string());
     let kind = || (0..PALETTE.len()).find(|&i| is(cells::category(i))).map(|i| format!("k{i}"));
-    let fixed = [("i", INK), ("g", GREY), ("w", RGBColor(255, 255, 255)), ("b", RGBColor(0, 0, 0)), ("e", cells::EMPTY)];
+    let fixed =
+        [("i", INK), ("g", GREY), ("w", RGBColor(255, 255, 255)), ("b", RGBColor(0, 0, 0)), ("e", cells::EMPTY)];
     fixed.into_iter().find(|&(_, known)| is(known)).map(|(name, _)| name.to_owned()).or_else(palette).or_else(kind)
 }
 
@@ -162,7 +167,13 @@ fn outline(points: &[(i32, i32)], closed: bool) -> String {
             (0, _) => 'v',
             _ => 'l',
         };
-        let values: &[i32] = if command == 'l' { &[dx, dy] } else if command == 'h' { &[dx] } else { &[dy] };
+        let values: &[i32] = if command == 'l' {
+            &[dx, dy]
+        } else if command == 'h' {
+            &[dx]
+        } else {
+            &[dy]
+        };
         if command != last {
             path.push(command);
         }
@@ -202,4 +213,61 @@ fn text(out: &mut String, element: &Element<'_>, words: &str) {
         format!("x={x} y={}", y + down.round() as i32)
     };
     let _ = write!(out, "<text class=\"f{class}{anchor}\" font-size={} {place}>{words}</text>", size.round());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every point of a path of M, l, h, v and z in absolute units.
+    fn places(path: &str) -> Vec<(i32, i32)> {
+        let mut places = Vec::new();
+        let mut at = (0, 0);
+        for part in
+            path.trim_end_matches('z').split_inclusive(|c: char| c.is_ascii_alphabetic()).collect::<Vec<_>>().windows(2)
+        {
+            let command = part[0].chars().last().expect("a command");
+            let numbers = part[1].trim_end_matches(|c: char| c.is_ascii_alphabetic()).replace('-', " -");
+            let numbers: Vec<i32> = numbers.split_whitespace().map(|n| n.parse().expect("a number")).collect();
+            for step in numbers.chunks(if matches!(command, 'h' | 'v') { 1 } else { 2 }) {
+                at = match command {
+                    'M' => (step[0], step[1]),
+                    'h' => (at.0 + step[0], at.1),
+                    'v' => (at.0, at.1 + step[0]),
+                    _ => (at.0 + step[0], at.1 + step[1]),
+                };
+                places.push(at);
+            }
+        }
+        places
+    }
+
+    #[test]
+    fn a_shortened_line_goes_through_the_same_points() {
+        let points = [(5, 7), (5, -3), (12, -3), (12, 4), (-8, -9), (0, 0), (3, -2), (3, -20)];
+        assert_eq!(places(&outline(&points, false)), points);
+        assert_eq!(places(&outline(&points, true)), points);
+        assert!(outline(&points, true).ends_with('z') && outline(&[], false).is_empty());
+    }
+
+    #[test]
+    fn marks_on_white_edges_are_two_paths_whatever_their_number() {
+        let mark = |x: i32| {
+            format!(
+                "<circle cx=\"{x}\" cy=\"5\" r=\"17\" fill=\"#FFFFFF\"/>\n<circle cx=\"{x}\" cy=\"5\" r=\"14\" fill=\"#0072B2\"/>\n"
+            )
+        };
+        let svg = format!(
+            "<svg viewBox=\"0 0 9 9\">\n<title id=\"a\">T</title>\n<desc id=\"b\">D</desc>\n{}</svg>",
+            (0..4).map(mark).collect::<String>()
+        );
+        let drawn = inline(&svg, "x");
+        assert_eq!(drawn.matches("<path").count(), 2, "{drawn}");
+        assert!(
+            drawn.contains("class=sw stroke-linecap=round stroke-width=34") && drawn.contains("class=s1"),
+            "{drawn}"
+        );
+        assert!(drawn.contains("<title id=x-t>T</title><desc id=x-d>D</desc>"), "{drawn}");
+        assert!(drawn.contains("d=\"M0 5h0M1 5h0M2 5h0M3 5h0\""), "{drawn}");
+    }
 }

@@ -5,8 +5,8 @@ use reports::{Axis, Figure, Layer, Series};
 
 use super::Row;
 use crate::observation::Quantity;
-use crate::run::{Outcome, Precision};
 use crate::page::scene_title;
+use crate::run::{Outcome, Precision};
 use crate::study::{color_of, command, distinct};
 
 /// Two charts a scene: all methods in f64 with the rounding floor, and three precisions of the same two methods.
@@ -62,7 +62,9 @@ fn caption(slopes: impl Iterator<Item = f64>, exact: &[&str]) -> String {
     let missing = match exact {
         [] => String::new(),
         [one] => format!(" {one} is exact here to the last bit and has no points."),
-        [first @ .., last] => format!(" {} and {last} are exact here to the last bit and have no points.", first.join(", ")),
+        [first @ .., last] => {
+            format!(" {} and {last} are exact here to the last bit and have no points.", first.join(", "))
+        }
     };
     slopes + &missing
 }

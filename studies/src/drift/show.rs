@@ -4,8 +4,8 @@ use integrator::methods::MethodId;
 use reports::{Axis, Figure, Layer, Series};
 
 use super::{Drift, Row};
-use crate::run::Precision;
 use crate::page::scene_title;
+use crate::run::Precision;
 use crate::study::{color_of, command, distinct};
 
 /// One chart for each scene and drift: the largest error so far, of every method in f64.
@@ -75,7 +75,11 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
     Figure {
         id: format!("drift-{}-{}", scene.replace('/', "-"), drift.id()),
         title: format!("{}: {name} over a long run, {}", scene_title(scene), precision.id()),
-        caption: if exact.is_empty() { caption.to_owned() } else { format!("{caption} Less than one rounding: {}.", exact.join(", ")) },
+        caption: if exact.is_empty() {
+            caption.to_owned()
+        } else {
+            format!("{caption} Less than one rounding: {}.", exact.join(", "))
+        },
         x: Axis::log("time (s)"),
         y: Axis::log(format!("largest {name} so far ({unit})")),
         layers,

@@ -41,9 +41,12 @@ fn schemes(rows: &[Row], seen: &[Seen]) -> Result<Derived, Error> {
     ];
     let numbers = &headers[1..7];
     let mut table = Table::new(&headers, numbers);
-    let lines: Vec<SchemeLine> = Scheme::all().into_iter().filter_map(|scheme| scheme_line(rows, seen, scheme)).collect();
+    let lines: Vec<SchemeLine> =
+        Scheme::all().into_iter().filter_map(|scheme| scheme_line(rows, seen, scheme)).collect();
     for line in &lines {
-        let grown = |(law, size): (&str, Option<f64>)| if law.is_empty() { "–".to_owned() } else { format!("{law}, {}", short(size)) };
+        let grown = |(law, size): (&str, Option<f64>)| {
+            if law.is_empty() { "–".to_owned() } else { format!("{law}, {}", short(size)) }
+        };
         let end = match (&line.long_run_end, line.long_run_momentum_ratio) {
             (end, _) if end.is_empty() => "–".to_owned(),
             (end, None) => end.clone(),
@@ -103,7 +106,8 @@ fn scheme_line(rows: &[Row], seen: &[Seen], scheme: Scheme) -> Option<SchemeLine
     let step = of_scheme(rows, Experiment::StepLaw, &id);
     let change = |name: &str| step.iter().find(|row| row.quantity.contains(name)).and_then(|row| row.value);
     let drift = of_scheme(rows, Experiment::Drift, &id);
-    let grown = |name: &str| law(&drift, name).map_or((String::new(), None), |(law, size)| (law.to_string(), Some(size)));
+    let grown =
+        |name: &str| law(&drift, name).map_or((String::new(), None), |(law, size)| (law.to_string(), Some(size)));
     let nutation = of_scheme(rows, Experiment::Nutation, &id).into_iter().find(|row| row.subject == "disc");
     let (energy_drift_law, energy_drift) = grown("T / T0 - 1");
     let (momentum_drift_law, momentum_drift) = grown("|L| / |L0| - 1");
@@ -143,7 +147,9 @@ fn destination(rows: &[Row], scheme: &str) -> (String, Option<f64>) {
         .filter(|row| row.subject == "start far from all axes")
         .collect();
     let ends = |name: &str| run.iter().rev().find(|row| row.quantity == name).and_then(|row| row.value);
-    let (Some(axis), Some(length)) = (ends("axis coordinate"), ends("|L| / |L0|")) else { return (String::new(), None) };
+    let (Some(axis), Some(length)) = (ends("axis coordinate"), ends("|L| / |L0|")) else {
+        return (String::new(), None);
+    };
     if let Some(step) = run[0].at_step {
         return (format!("blows up at step {step}"), None);
     }

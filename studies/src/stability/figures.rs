@@ -87,11 +87,10 @@ fn damped(rows: &[Row], scheme: Scheme) -> Option<Figure> {
 
 fn region(rows: &[Row], method: MethodId) -> Option<Figure> {
     let rows = chosen(rows, Part::Region, method.id())?;
-    let map =
-        cells(&rows, maps::REGION, kinds(&["shrinks", "grows"]), |row| {
-            // No number stands for a pole.
-            Some(f64::from(u8::from(row.measured.is_none_or(|r| r > 1.0))))
-        });
+    let map = cells(&rows, maps::REGION, kinds(&["shrinks", "grows"]), |row| {
+        // No number stands for a pole.
+        Some(f64::from(u8::from(row.measured.is_none_or(|r| r > 1.0))))
+    });
     let layers = vec![Layer::Cells(map), curve("theory, |R| = 1", region_boundary(method))];
     let caption = match method {
         MethodId::ExplicitEuler => "A disc that only touches the imaginary axis: every undamped oscillation grows.",
