@@ -16,6 +16,9 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// All of them, the best first.
+    pub const ALL: [Self; 3] = [Self::Holds, Self::Broken, Self::NotTested];
+
     /// `Holds` if the comparison with the bound came out true, `Broken` if not; comparisons with NaN are false.
     pub fn from_comparison(inside: bool) -> Self {
         if inside { Self::Holds } else { Self::Broken }

@@ -59,6 +59,14 @@ pub enum Error {
         /// What the library said.
         message: String,
     },
+    /// A formula that cannot be typeset.
+    #[error("formula '{latex}': {message}")]
+    Formula {
+        /// The formula.
+        latex: String,
+        /// What cannot be read, and where.
+        message: String,
+    },
     /// A page that refers to something it does not hold.
     #[error("page, {place}: {message}")]
     Page {

@@ -1,11 +1,16 @@
-//! One self-contained page: verdicts, findings, tables, claims, figures. No script or style comes from elsewhere.
+//! One self-contained page: verdicts, findings, tables, claims, figures, formulas. Nothing comes from elsewhere.
 
-use crate::{Claim, Error, Figure, Table, Verdict, claim};
+mod block;
+mod opening;
+
+pub use block::Block;
+
+use crate::{Claim, Error, Figure, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::HashSet;
 
 const STYLE: &str = include_str!("page/style.css");
-const SORT: &str = include_str!("page/sort.js");
+const SCRIPT: &str = concat!(include_str!("page/sort.js"), include_str!("page/find.js"), include_str!("page/open.js"));
 
 /// A report as one page.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +19,8 @@ pub struct Page {
     pub title: String,
     /// Opening paragraph.
     pub lead: String,
+    /// Pages beside this one that a reader should know of at once: what each is, and its name.
+    pub links: Vec<(String, String)>,
     /// What was found, most important first.
     pub findings: Vec<Finding>,
     /// The studies.
@@ -22,13 +29,43 @@ pub struct Page {
     pub footer: Vec<(String, String)>,
 }
 
+/// One finding of the summary.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Finding {
+    /// The finding in a few words.
+    pub title: String,
+    /// The number that carries it, with its unit; set large.
+    pub number: String,
+    /// What was measured, in one or two sentences.
+    pub text: String,
+    /// Id of the figure that shows it.
+    pub figure: Option<String>,
+    /// Id of the claim that it rests on.
+    pub claim: Option<String>,
+}
+
+/// One study.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    /// Anchor, unique within the page.
+    pub id: String,
+    /// Heading.
+    pub title: String,
+    /// Opening paragraph: the question and how it is answered.
+    pub intro: String,
+    /// What follows, in order.
+    pub blocks: Vec<Block>,
+}
+
 impl Page {
     /// The page as one HTML document. It loads nothing: style, script and drawings are inside.
     ///
     /// # Errors
-    /// [`Error::Page`] when two sections, figures or claims share an id, or a finding names a figure the page lacks.
+    /// [`Error::Page`] when two sections, figures, groups or claims share an id, or a finding names a figure or a claim that
+    /// the page lacks; [`Error::Formula`] for a formula that cannot be typeset.
     pub fn html(&self) -> Result<String, Error> {
         self.check()?;
+        let sections = self.sections.iter().map(Section::markup).collect::<Result<Vec<_>, _>>()?;
         let document = html! {
             (DOCTYPE)
             html lang="en" {
@@ -41,76 +78,80 @@ impl Page {
                 }
                 body {
                     a.skip href="#main" { "Skip to the content" }
-                    header { h1 { (self.title) } p { (self.lead) } (self.verdicts()) }
-                    nav aria-label="Sections" { ul { @for s in &self.sections { li { a href={ "#" (s.id) } { (s.title) } } } } }
-                    main #main { (self.summary()) @for section in &self.sections { (section.markup()) } }
-                    footer { dl { @for (name, value) in &self.footer { dt { (name) } dd { (value) } } } }
-                    script { (PreEscaped(SORT)) }
+                    (self.navigation())
+                    div.column {
+                        main #main { (self.opening()) @for section in &sections { (section) } }
+                        footer {
+                            h2 { "Where these numbers come from" }
+                            dl { @for (name, value) in &self.footer { dt { (name) } dd { (value) } } }
+                        }
+                    }
+                    script { (PreEscaped(SCRIPT)) }
                 }
             }
         };
-        Ok(document.into_string())
+        // HTML lets a cell and a row end where the next begins, and there are tens of thousands. Words are escaped, and so
+        // are never taken for a tag.
+        Ok(document.into_string().replace("</td>", "").replace("</tr>", ""))
     }
 
-    fn blocks(&self) -> impl Iterator<Item = &Block> {
-        self.sections.iter().flat_map(|section| &section.blocks)
+    fn navigation(&self) -> Markup {
+        html! {
+            nav aria-label="Sections" {
+                a.home href="#main" { (self.title) }
+                ul {
+                    @for (text, file) in &self.links { li.strong { a href=(file) { (text) } } }
+                    @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title) } } }
+                }
+                form #find hidden role="search" {
+                    label for="find-text" { "Find claims" }
+                    input #find-text type="search" placeholder="rk4 kepler energy" autocomplete="off";
+                    label for="find-verdict" { "Verdict" }
+                    select #find-verdict {
+                        option value="" { "any" }
+                        @for verdict in Verdict::ALL { option value=(verdict) { (verdict) } }
+                    }
+                    output #find-count aria-live="polite" {}
+                }
+                button #theme type="button" hidden { "Light or dark" }
+            }
+        }
     }
 
-    fn claims(&self) -> impl Iterator<Item = &Claim> {
-        self.blocks().flat_map(|block| if let Block::Claims(claims) = block { &claims[..] } else { &[] })
+    fn blocks(&self) -> Vec<&Block> {
+        self.sections.iter().flat_map(Section::all_blocks).collect()
     }
 
-    fn check(&self) -> Result<(), Error> {
-        let figures =
-            || self.blocks().filter_map(|b| if let Block::Figure { figure, .. } = b { Some(&figure.id) } else { None });
-        let figure_ids = unique("figure", figures())?;
-        unique("section", self.sections.iter().map(|section| &section.id))?;
-        unique("claim", self.claims().map(|claim| &claim.id))?;
-        let lost = self
-            .findings
-            .iter()
-            .find_map(|f| f.figure.as_ref().filter(|id| !figure_ids.contains(id)).map(|id| (f, id)));
-        lost.map_or(Ok(()), |(finding, id)| {
-            let place = format!("finding '{}'", finding.title);
-            Err(Error::Page { place, message: format!("figure '{id}' is not on the page") })
+    fn claims(&self) -> Vec<&Claim> {
+        self.sections.iter().flat_map(Section::claims).collect()
+    }
+
+    /// The figure of that id with its drawing.
+    fn figure(&self, id: &str) -> Option<(&Figure, &str)> {
+        self.blocks().into_iter().find_map(|block| match block {
+            Block::Figure { figure, svg } if figure.id == id => Some((figure, svg.as_str())),
+            _ => None,
         })
     }
 
-    fn verdicts(&self) -> Markup {
-        let counts = claim::counts(self.claims());
-        let all =
-            [(counts.holds, Verdict::Holds), (counts.broken, Verdict::Broken), (counts.not_tested, Verdict::NotTested)];
-        html! {
-            ul.counts aria-label="Verdicts of all claims" {
-                @for (count, verdict) in all { li { strong { (count) } " " (mark(verdict)) } }
-            }
-        }
-    }
-
-    fn summary(&self) -> Markup {
-        let broken: Vec<&Claim> = self.claims().filter(|claim| claim.verdict == Verdict::Broken).collect();
-        html! {
-            @if !broken.is_empty() {
-                h2 #broken { "Broken claims" }
-                ul {
-                    @for claim in broken {
-                        li { a href={ "#claim-" (claim.id) } { (claim.statement) } ": measured " (claim.measured) ", bound " (claim.bound) }
-                    }
-                }
-            }
-            @if !self.findings.is_empty() {
-                h2 #findings { "Findings" }
-                ul.findings {
-                    @for finding in &self.findings {
-                        li {
-                            h3 { (finding.title) }
-                            p { (finding.text) }
-                            @if let Some(id) = &finding.figure { a href={ "#figure-" (id) } { "See the chart" } }
-                        }
-                    }
+    fn check(&self) -> Result<(), Error> {
+        let blocks = self.blocks();
+        let figures = unique(
+            "figure",
+            blocks.iter().filter_map(|b| if let Block::Figure { figure, .. } = b { Some(&figure.id) } else { None }),
+        )?;
+        let groups = blocks.iter().filter_map(|b| if let Block::Group { id, .. } = b { Some(id) } else { None });
+        unique("section", self.sections.iter().map(|section| &section.id).chain(groups))?;
+        let claims = unique("claim", self.claims().into_iter().map(|claim| &claim.id))?;
+        for finding in &self.findings {
+            for (kind, id, known) in [("figure", &finding.figure, &figures), ("claim", &finding.claim, &claims)] {
+                if let Some(id) = id.as_ref().filter(|id| !known.contains(id)) {
+                    let place = format!("finding '{}'", finding.title);
+                    return Err(Error::Page { place, message: format!("{kind} '{id}' is not on the page") });
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -138,123 +179,28 @@ fn mark(verdict: Verdict) -> Markup {
     html! { span class={ "verdict " (class) } { span aria-hidden="true" { (verdict.sign()) " " } (verdict) } }
 }
 
-/// One finding of the summary.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Finding {
-    /// The finding in a few words.
-    pub title: String,
-    /// What was measured, in one or two sentences.
-    pub text: String,
-    /// Id of the figure that shows it.
-    pub figure: Option<String>,
-}
-
-/// One study.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Section {
-    /// Anchor, unique within the page.
-    pub id: String,
-    /// Heading.
-    pub title: String,
-    /// Opening paragraph: the question and how it is answered.
-    pub intro: String,
-    /// What follows, in order.
-    pub blocks: Vec<Block>,
-}
-
-/// One part of a section.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Block {
-    /// A paragraph.
-    Text(String),
-    /// A table.
-    Table {
-        /// What the table shows.
-        caption: String,
-        /// Its rows.
-        table: Table,
-        /// Link to the CSV file with the same numbers.
-        csv: Option<String>,
-    },
-    /// Claims with their verdicts.
-    Claims(Vec<Claim>),
-    /// Files beside the page: what each is, and its name.
-    Links {
-        /// What the files are.
-        caption: String,
-        /// Text and file name of each.
-        files: Vec<(String, String)>,
-    },
-    /// A figure with its drawing, as [`crate::plot::svg`] gives it.
-    Figure {
-        /// The figure: id, caption, command, data.
-        figure: Figure,
-        /// The drawing.
-        svg: String,
-    },
-}
-
 impl Section {
-    fn markup(&self) -> Markup {
-        html! {
+    /// Its blocks and those of its groups.
+    fn all_blocks(&self) -> Vec<&Block> {
+        self.blocks.iter().flat_map(Block::and_inner).collect()
+    }
+
+    fn claims(&self) -> Vec<&Claim> {
+        let claims = self
+            .all_blocks()
+            .into_iter()
+            .filter_map(|b| if let Block::Claims(claims) = b { Some(claims) } else { None });
+        claims.flatten().collect()
+    }
+
+    fn markup(&self) -> Result<Markup, Error> {
+        let blocks = self.blocks.iter().map(Block::markup).collect::<Result<Vec<_>, _>>()?;
+        Ok(html! {
             section #(self.id) aria-labelledby={ (self.id) "-title" } {
                 h2 id={ (self.id) "-title" } { (self.title) }
                 p { (self.intro) }
-                @for block in &self.blocks { (block.markup()) }
+                @for block in &blocks { (block) }
             }
-        }
-    }
-}
-
-impl Block {
-    fn markup(&self) -> Markup {
-        match self {
-            Self::Text(text) => html! { p { (text) } },
-            Self::Table { caption, table, csv } => html! {
-                (scroll(caption, &table.markup(caption)))
-                @if let Some(csv) = csv { p.source { "Data: " a href=(csv) { (csv) } } }
-            },
-            Self::Claims(claims) => scroll("Claims", &claims_table(claims)),
-            Self::Links { caption, files } => html! {
-                details {
-                    summary { (caption) " (" (files.len()) ")" }
-                    ul { @for (text, file) in files { li { a href=(file) { (text) } } } }
-                }
-            },
-            Self::Figure { figure, svg } => html! {
-                figure id={ "figure-" (figure.id) } {
-                    (scroll(&figure.title, &PreEscaped(svg.clone())))
-                    figcaption { (figure.caption) }
-                    p.source {
-                        @if !figure.data.is_empty() { "Data: " a href=(figure.data) { (figure.data) } ". " }
-                        @if !figure.command.is_empty() { "Made by " code { (figure.command) } }
-                    }
-                }
-            },
-        }
-    }
-}
-
-/// A box that scrolls by itself, so that the page never does sideways; reachable by the keyboard.
-fn scroll(label: &str, inside: &Markup) -> Markup {
-    html! { div.scroll tabindex="0" role="region" aria-label=(label) { (inside) } }
-}
-
-fn claims_table(claims: &[Claim]) -> Markup {
-    html! {
-        table.sortable.claims {
-            thead { tr { @for head in ["Claim", "Theory", "Measured", "Bound", "Verdict"] { th scope="col" { (head) } } } }
-            tbody {
-                @for claim in claims {
-                    tr id={ "claim-" (claim.id) } {
-                        td { (claim.statement) }
-                        td { (claim.theory) }
-                        td { (claim.measured) }
-                        td { (claim.bound) }
-                        td { (mark(claim.verdict)) }
-                    }
-                }
-            }
-        }
+        })
     }
 }

@@ -24,12 +24,24 @@ fn page() -> Page {
         Block::Text(words("a < b")),
         Block::Table { caption: words("Orders"), table, csv: Some(words("orders.csv")) },
         Block::Claims(vec![claim("a", Verdict::Holds), claim("b", Verdict::Broken), claim("c", Verdict::NotTested)]),
-        Block::Figure { figure, svg },
+        Block::Group {
+            id: words("convergence-kepler"),
+            title: words("Kepler"),
+            note: words("1 chart"),
+            blocks: vec![Block::Formula(words(r"m\ddot{x} = -k x")), Block::Figure { figure, svg }],
+        },
     ];
     Page {
         title: words("Report"),
         lead: words("What it is."),
-        findings: vec![Finding { title: words("First"), text: words("It holds."), figure: Some(words("orders")) }],
+        links: vec![(words("Try it"), words("teach.html"))],
+        findings: vec![Finding {
+            title: words("First"),
+            number: words("3.98"),
+            text: words("It holds."),
+            figure: Some(words("orders")),
+            claim: Some(words("a")),
+        }],
         sections: vec![Section { id: words("convergence"), title: words("Convergence"), intro: words("How?"), blocks }],
         footer: vec![(words("rustc"), words("1.90 <stable>"))],
     }
@@ -41,7 +53,7 @@ fn words_are_escaped_and_drawings_are_not() {
     assert!(
         html.contains("a &lt; b") && html.contains("claim b &amp; &lt;b&gt;") && html.contains("1.90 &lt;stable&gt;")
     );
-    assert!(html.contains("<svg xmlns=") && !html.contains("&lt;svg"));
+    assert!(html.contains("<svg class=chart") && !html.contains("&lt;svg") && html.contains("<mi>k</mi>"));
 }
 
 #[test]
@@ -49,23 +61,30 @@ fn every_verdict_is_a_word_and_the_broken_come_first() {
     let html = page().html().expect("a proper page");
     for word in ["✓ </span>holds", "✗ </span>broken", "– </span>not tested"] {
         assert_eq!(html.matches(word).count(), 2, "{word}: once in the counts, once in the claims");
+        let row = format!("<option value=\"{0}\">{0}", word.rsplit('>').next().expect("a word"));
+        assert!(html.contains(&row), "{row}: to be searched for");
     }
     let (broken, section) =
         (html.find("Broken claims").expect("named"), html.find("id=\"convergence\"").expect("there"));
-    assert!(broken < section && html.contains("href=\"#claim-b\"") && !html.contains("href=\"#claim-a\""));
+    let findings = html.find("What matters").expect("named");
+    assert!(broken < findings && findings < section, "{broken} {findings} {section}");
+    let listed = &html[broken..findings];
+    assert!(listed.contains("href=\"#claim-b\"") && !listed.contains("href=\"#claim-a\""), "{listed}");
 }
 
 #[test]
 fn every_link_within_the_page_has_its_target() {
     let html = page().html().expect("a proper page");
     let targets: Vec<&str> = html.split("href=\"#").skip(1).filter_map(|rest| rest.split('"').next()).collect();
-    assert_eq!(targets, ["main", "convergence", "claim-b", "figure-orders"]);
+    let expected = ["main", "main", "convergence", "convergence", "claim-b", "claim-a", "figure-orders"];
+    assert_eq!(targets, expected);
     assert!(targets.iter().all(|id| html.matches(&format!("id=\"{id}\"")).count() == 1), "{targets:?}");
+    assert_eq!(html.matches("href=\"teach.html\"").count(), 2, "in the navigation and at the top");
 }
 
 #[test]
 fn nothing_is_loaded_from_elsewhere() {
-    let html = page().html().expect("a proper page").replace("http://www.w3.org/2000/svg", "");
+    let html = page().html().expect("a proper page");
     for load in ["http:", "https:", "src=", "@import", "url("] {
         assert!(!html.contains(load), "{load}");
     }
@@ -75,7 +94,7 @@ fn nothing_is_loaded_from_elsewhere() {
 fn every_region_that_scrolls_has_a_name_and_can_be_reached_by_key() {
     let html = page().html().expect("a proper page");
     let regions: Vec<&str> = html.split("<div class=\"scroll\"").skip(1).filter_map(|r| r.split('>').next()).collect();
-    assert_eq!(regions.len(), 3);
+    assert_eq!(regions.len(), 4, "a table, claims, a chart, and the chart of the finding");
     let named = |r: &&str| r.contains("tabindex=\"0\"") && r.contains("role=\"region\"") && !r.contains("label=\"\"");
     assert!(regions.iter().all(named), "{regions:?}");
     assert!(html.contains("lang=\"en\"") && html.contains("width=device-width") && html.contains("<main id=\"main\">"));
@@ -90,31 +109,65 @@ fn ids_that_come_twice_and_figures_that_are_missing_are_refused() {
     lost.findings[0].figure = Some("nowhere".to_owned());
     let message = lost.html().expect_err("no such figure").to_string();
     assert!(message.contains("'First'") && message.contains("'nowhere'"), "{message}");
+    let mut unclaimed = page();
+    unclaimed.findings[0].claim = Some("nowhere".to_owned());
+    assert!(unclaimed.html().expect_err("no such claim").to_string().contains("claim 'nowhere'"));
 }
 
-/// Relative luminance and contrast after WCAG 2.1, section 1.4.3: 4.5 for words of any size.
 #[test]
-fn every_colour_of_words_can_be_read_on_every_ground() {
-    let style = include_str!("../src/page/style.css");
-    let schemes: Vec<&str> = style.split(":root{").skip(1).take(2).filter_map(|rest| rest.split('}').next()).collect();
-    assert_eq!(schemes.len(), 2, "light and dark");
-    for scheme in schemes {
+fn every_chart_is_an_image_with_a_name_and_a_description_of_its_own() {
+    let html = page().html().expect("a proper page");
+    let charts: Vec<&str> = html.split("<svg ").skip(1).filter_map(|rest| rest.split('>').next()).collect();
+    assert_eq!(charts.len(), 2);
+    for chart in charts {
+        let ids = chart.split("aria-labelledby=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("named");
+        assert!(chart.contains("role=img"), "{chart}");
+        for (tag, id) in ["title", "desc"].iter().zip(ids.split(' ')) {
+            assert_eq!(html.matches(&format!("<{tag} id={id}>")).count(), 1, "{tag} of {chart}");
+        }
+    }
+    assert_eq!(html.matches("-t>Orders</title>").count(), 2);
+}
+
+#[test]
+fn a_chart_on_the_page_leaves_its_colours_to_the_style_and_says_the_same_words() {
+    let (html, page) = (page().html().expect("a proper page"), page());
+    let Block::Group { blocks, .. } = &page.sections[0].blocks[3] else { panic!("the group") };
+    let Block::Figure { svg, .. } = &blocks[1] else { panic!("the figure") };
+    let drawn = html.split("<svg ").nth(1).and_then(|rest| rest.split("</svg>").next()).expect("the chart");
+    assert!(!drawn.contains('#') && drawn.contains("class=\"fi") && svg.contains("fill=\"#262626\""), "{drawn}");
+    assert!(drawn.contains("no finite data") && drawn.len() < svg.len(), "{} of {}", drawn.len(), svg.len());
+}
+
+/// Relative luminance and contrast after WCAG 2.1: 4.5 for words (1.4.3), 3 for what is drawn (1.4.11).
+#[test]
+fn every_colour_can_be_seen_on_every_ground_by_day_and_by_night() {
+    for night in [false, true] {
         for ground in ["ground", "card"] {
             for words in ["ink", "soft", "link", "holds", "broken", "untested"] {
-                let (a, b) = (luminance(scheme, ground), luminance(scheme, words));
-                let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
-                assert!(contrast >= 4.5, "{words} on {ground}: {contrast:.2} in {scheme}");
+                let contrast = contrast(words, ground, night);
+                assert!(contrast >= 4.5, "{words} on {ground}: {contrast:.2}, night: {night}");
             }
+        }
+        for line in 0..8 {
+            let contrast = contrast(&format!("c{line}"), "ground", night);
+            assert!(contrast >= 3.0, "line {line}: {contrast:.2}, night: {night}");
         }
     }
 }
 
-fn luminance(scheme: &str, name: &str) -> f64 {
-    let value = scheme.split(&format!("--{name}:#")).nth(1).expect("the colour");
-    let hex = value.split(';').next().expect("a value");
-    let long: String = if hex.len() == 3 { hex.chars().flat_map(|c| [c, c]).collect() } else { hex.to_owned() };
+fn contrast(a: &str, b: &str, night: bool) -> f64 {
+    let (a, b) = (luminance(a, night), luminance(b, night));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+fn luminance(name: &str, night: bool) -> f64 {
+    let style = include_str!("../src/page/style.css");
+    let value = style.split(&format!("--{name}:light-dark(#")).nth(1).expect("the colour");
+    let pair: Vec<&str> = value.split(')').next().expect("a pair").split(",#").collect();
+    let hex = pair[usize::from(night)];
     let part = |i: usize| {
-        let c = f64::from(u8::from_str_radix(&long[2 * i..2 * i + 2], 16).expect("hexadecimal")) / 255.0;
+        let c = f64::from(u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).expect("hexadecimal")) / 255.0;
         if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
     };
     0.2126 * part(0) + 0.7152 * part(1) + 0.0722 * part(2)

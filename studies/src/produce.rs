@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use rayon::prelude::*;
-use reports::{Block, Claim, Figure, Finding, OutputDir, Page, Section};
+use reports::{Block, Claim, Figure, OutputDir, Section};
 
 use crate::adequacy::Adequacy;
 use crate::cli::{Common, Format};
 use crate::convergence::Convergence;
 use crate::drift::DriftStudy;
 use crate::error::Error;
+use crate::page;
 use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
@@ -130,7 +131,7 @@ pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, E
         files.push((format!("{name}.csv"), csv.into_bytes()));
         blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
-    let section = Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks };
+    let section = page::section::<S>(blocks);
     Ok(Product { files, section, claims })
 }
 
@@ -193,60 +194,10 @@ pub fn report(common: &Common) -> Result<Judged, Error> {
         sections.push(product.section);
         claims.extend(product.claims);
     }
-    let page = Page {
-        title: "How accurate is a fixed step?".to_owned(),
-        lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known."
-            .to_owned(),
-        findings: findings(&claims, &sections),
-        sections,
-        footer: source.manifest.lines(),
-    };
-    files.push(("index.html".to_owned(), page.html()?.into_bytes()));
+    let has_teaching_page = files.iter().any(|(name, _)| name == page::TEACH);
+    let scenes = source.manifest.plan.selection()?.scenes;
+    let html = page::html(sections, &scenes, has_teaching_page, source.manifest.lines())?;
+    files.push(("index.html".to_owned(), html.into_bytes()));
     write(&out, common, files, &source.manifest)?;
     Ok(Judged { claims, manifest: source.manifest })
-}
-
-/// What a busy reader should take away: a title, the claim that carries it, and the chart that shows it.
-const FINDINGS: [(&str, &str, &str); 6] = [
-    ("Explicit Euler gains energy at every step", "drift.oscillator.explicit-euler.energy", "drift-oscillator-energy"),
-    (
-        "Semi-implicit Euler keeps it in a band, for ever",
-        "drift.oscillator.semi-implicit-euler.energy",
-        "drift-oscillator-energy",
-    ),
-    (
-        "A force that depends on the velocity takes that advantage away",
-        "drift.charged-particle/magnetic.semi-implicit-euler.energy",
-        "drift-charged-particle-magnetic-energy",
-    ),
-    (
-        "RK4 is worth its four evaluations where the motion is smooth",
-        "convergence.torque-free-spin.rk4.order",
-        "precision-torque-free-spin-attitude",
-    ),
-    (
-        "Without the gyroscopic term no step is small enough",
-        "rotation.semi-implicit-euler/without-gyroscopic-term.order-0",
-        "rotation-error-torque-free-spin",
-    ),
-    (
-        "A spinning body is not a spring: semi-implicit Euler gains energy",
-        "rotation.step-law.energy.asymmetric-body.semi-implicit-euler/body-omega",
-        "rotation-axis-start-near-most-inertia",
-    ),
-];
-
-/// The findings whose claim was made; a claim that broke is told as broken.
-fn findings(claims: &[Claim], sections: &[Section]) -> Vec<Finding> {
-    let finding = |&(title, id, figure): &(&str, &str, &str)| {
-        let claim = claims.iter().find(|claim| claim.id == id || claim.id.starts_with(&format!("{id}.")))?;
-        let mut blocks = sections.iter().flat_map(|section| &section.blocks);
-        let drawn = blocks.any(|block| matches!(block, Block::Figure { figure: on_page, .. } if on_page.id == figure));
-        Some(Finding {
-            title: title.to_owned(),
-            text: format!("{}: {} (theory: {}) – {}.", claim.statement, claim.measured, claim.theory, claim.verdict),
-            figure: drawn.then(|| figure.to_owned()),
-        })
-    };
-    FINDINGS.iter().filter_map(finding).collect()
 }

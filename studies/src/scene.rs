@@ -20,6 +20,8 @@ use crate::stability::displaced::run_displaced;
 pub struct Info {
     /// One line: what moves, and why it is looked at.
     pub about: &'static str,
+    /// The equation of motion, in LaTeX.
+    pub equation: &'static str,
     /// Where the exact motion comes from.
     pub source: &'static str,
     /// End of an error run, s: dyadic, and neither a period nor half of one.

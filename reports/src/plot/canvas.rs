@@ -7,9 +7,9 @@ use super::axis::AxisMap;
 use super::clip::{Point, Window};
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::series::DashedLineSeries;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
+use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 /// Units of the drawing in a CSS pixel.
@@ -27,15 +27,15 @@ pub(super) const INK: RGBColor = RGBColor(0x26, 0x26, 0x26);
 pub(super) const GREY: RGBColor = RGBColor(0x5C, 0x5C, 0x5C);
 
 /// Okabe and Ito, "Color Universal Design" (2008), told apart with any colour vision; its yellow, too light for a line
-/// on white, is replaced by a dark purple, its orange and sky blue are darkened for the same reason.
+/// on white, is replaced by a dark purple, its orange, pink and sky blue are darkened for the same reason.
 pub(super) const PALETTE: [RGBColor; 8] = [
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0x00, 0x9E, 0x73),
-    RGBColor(0xCC, 0x79, 0xA7),
+    RGBColor(0xC7, 0x6F, 0xA0),
     RGBColor(0x1A, 0x1A, 0x1A),
     RGBColor(0xB8, 0x86, 0x00),
-    RGBColor(0x3B, 0xA3, 0xD9),
+    RGBColor(0x2E, 0x97, 0xCC),
     RGBColor(0x6A, 0x3D, 0x9A),
 ];
 
@@ -101,6 +101,27 @@ pub(super) fn units(pixels: f64) -> i32 {
 /// Line of a width in CSS pixels.
 pub(super) fn stroke(color: impl Into<RGBAColor>, pixels: f64) -> ShapeStyle {
     color.into().stroke_width(units(pixels).max(1) as u32)
+}
+
+/// Greater than every width, dash and gap in units: what tells them apart in one number.
+const CODE: u32 = 100;
+
+/// The drawing with every width that tells the lengths of dash and gap taken apart.
+pub(super) fn with_dashes(drawing: &str) -> String {
+    const WIDTH: &str = "stroke-width=\"";
+    let mut parts = drawing.split(WIDTH);
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find('"').unwrap_or(0);
+        let code: u32 = part[..end].parse().unwrap_or(0);
+        let (dash, width) = (code / CODE, code % CODE);
+        let _ = write!(out, "{WIDTH}{width}");
+        if dash > 0 {
+            let _ = write!(out, "\" stroke-dasharray=\"{} {}", dash % CODE, dash / CODE);
+        }
+        out.push_str(&part[end..]);
+    }
+    out
 }
 
 /// A rectangle on the sheet, in units.
@@ -181,11 +202,11 @@ impl Canvas<'_> {
         self.root.draw(&PathElement::new(points, style))
     }
 
+    /// A line of dashes. The library would draw every dash as a line of its own; it is given one line whose width tells the
+    /// lengths of dash and gap, see [`with_dashes`].
     pub(super) fn dashed(&self, points: Vec<Pixel>, on: f64, off: f64, style: ShapeStyle) -> Drawn {
-        for dash in DashedLineSeries::new(points, units(on), units(off), style) {
-            self.root.draw(&dash)?;
-        }
-        Ok(())
+        let [on, off] = [on, off].map(|length| units(length).clamp(1, CODE as i32 - 1) as u32);
+        self.line(points, ShapeStyle { stroke_width: (off * CODE + on) * CODE + style.stroke_width, ..style })
     }
 
     pub(super) fn fill(&self, points: Vec<Pixel>, color: impl Into<RGBAColor>) -> Drawn {

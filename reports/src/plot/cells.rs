@@ -6,7 +6,7 @@ use crate::{Axis, Cells, Palette, Scale};
 use plotters::prelude::*;
 
 /// Colour of a cell without a value: no other map colour is grey.
-const EMPTY: RGBColor = RGBColor(0xD9, 0xD9, 0xD9);
+pub(super) const EMPTY: RGBColor = RGBColor(0xD9, 0xD9, 0xD9);
 /// From light to dark with even steps of lightness and one direction of hue (yellow, green, blue).
 const STOPS: [[f64; 3]; 6] = [
     [255.0, 247.0, 188.0],
@@ -48,7 +48,7 @@ fn sequential(fraction: f64) -> RGBColor {
 }
 
 /// Kinds are areas, not lines: the palette, lightened so that curves and words on it can be read.
-fn category(index: usize) -> RGBColor {
+pub(super) fn category(index: usize) -> RGBColor {
     let RGBColor(r, g, b) = palette([2, 5, 0, 1, 3, 6, 7, 4][index % 8]);
     let light = |c: u8| (f64::from(c) * 0.55 + 255.0 * 0.45).round() as u8;
     RGBColor(light(r), light(g), light(b))

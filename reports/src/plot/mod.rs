@@ -9,6 +9,7 @@ mod axis;
 mod canvas;
 mod cells;
 mod clip;
+mod inline;
 mod labels;
 mod layers;
 mod markers;
@@ -22,6 +23,8 @@ use canvas::{CENTER, Canvas, Frame, GREY, INK, LEFT, Rect, UNITS, font, stroke, 
 #[cfg(feature = "png")]
 pub(crate) use canvas::{FAMILY, FONT};
 use plotters::prelude::*;
+
+pub(crate) use inline::inline;
 
 /// What the drawing library says when it refuses.
 type Refused = DrawingAreaErrorKind<std::io::Error>;
@@ -222,7 +225,7 @@ fn finish(figure: &Figure, drawing: &str) -> String {
         height * UNITS as u32,
         escape(&figure.title),
         escape(&figure.caption),
-        printable(body).replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "")
+        canvas::with_dashes(&printable(body)).replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "")
     )
 }
 

@@ -13,6 +13,8 @@ pub(super) const SIZE: f64 = 12.0;
 pub(super) struct Taken {
     pub(super) points: Vec<Pixel>,
     pub(super) boxes: Vec<Rect>,
+    /// Whether there is a map below.
+    pub(super) map: bool,
 }
 
 impl Taken {
@@ -74,7 +76,8 @@ fn taken(canvas: &Canvas<'_>, figure: &Figure) -> Taken {
         }
     }
     points.extend(layers::failed_places(canvas, &series).into_iter().map(|(at, _)| at));
-    Taken { points, boxes: Vec::new() }
+    let map = figure.layers.iter().any(|layer| matches!(layer, Layer::Cells(_)));
+    Taken { points, boxes: Vec::new(), map }
 }
 
 /// Points of a segment, three CSS pixels apart.
@@ -147,5 +150,10 @@ fn best(canvas: &Canvas<'_>, text: &str, spots: impl Iterator<Item = Pixel>, tak
         return Ok(());
     }
     taken.boxes.push(place(at));
+    if taken.map {
+        // No ink can be read on every colour of a map.
+        let around = Rect::of_text(at, text_width(text, SIZE) + 6.0, 15.0, HPos::Center);
+        canvas.rect(around, WHITE.mix(0.85).filled())?;
+    }
     canvas.text(text, at, SIZE, GREY, CENTER)
 }

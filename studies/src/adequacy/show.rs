@@ -183,7 +183,7 @@ fn figure(rows: &[Row], scene: &str) -> Figure {
     let (quantity, unit) = of_scene.first().map_or(("", ""), |row| (row.quantity.as_str(), row.unit.as_str()));
     Figure {
         id: format!("adequacy-{}", scene.replace(' ', "-")),
-        title: format!("{scene}: what each model buys"),
+        title: format!("{}: what each model buys", crate::page::scene_title(scene)),
         caption: "A model that leaves out what matters goes flat: from there on every operation is wasted. The full model goes on."
             .to_owned(),
         x: Axis::log("operations of the run (1)"),

@@ -5,6 +5,7 @@ use reports::{Axis, Figure, Layer, Series};
 
 use super::Row;
 use crate::observation::Quantity;
+use crate::page::scene_title;
 use crate::run::{Outcome, Precision};
 use crate::study::{color_of, command, distinct};
 
@@ -39,6 +40,35 @@ fn series(name: String, color: usize, rows: &[&Row]) -> Layer {
     Layer::Series(Series { failed, ..Series::new(name, color, points) })
 }
 
+/// Whether every run ended with an error of zero: there is nothing to draw.
+fn is_exact(rows: &[&Row]) -> bool {
+    rows.iter().all(|row| row.error_end == Some(0.0))
+}
+
+/// What to see: the slopes that are there, and who is missing because it makes no error.
+fn caption(slopes: impl Iterator<Item = f64>, exact: &[&str]) -> String {
+    let falls: Vec<String> = slopes
+        .map(|order| match order {
+            1.0 => "halves an error of order 1".to_owned(),
+            2.0 => "quarters one of order 2".to_owned(),
+            order => format!("divides one of order {order} by {}", order.exp2()),
+        })
+        .collect();
+    let slopes = if falls.is_empty() {
+        "What is left is rounding.".to_owned()
+    } else {
+        format!("Halving the step {}, until rounding takes over.", falls.join(", "))
+    };
+    let missing = match exact {
+        [] => String::new(),
+        [one] => format!(" {one} is exact here to the last bit and has no points."),
+        [first @ .., last] => {
+            format!(" {} and {last} are exact here to the last bit and have no points.", first.join(", "))
+        }
+    };
+    slopes + &missing
+}
+
 fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
     let precision = [Precision::F64, Precision::DoubleDouble, Precision::F32]
         .into_iter()
@@ -50,22 +80,27 @@ fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
     if rounding > 0.0 {
         layers.push(Layer::Floor { y: rounding, label: format!("largest rounding error ({})", precision.id()) });
     }
+    let mut exact = Vec::new();
+    let mut orders = Vec::new();
     for method in MethodId::ALL {
         let of_method: Vec<&Row> = rows.iter().copied().filter(|row| row.method == method.id()).collect();
-        if !of_method.is_empty() {
-            layers.push(series(method.title().to_owned(), color_of(*method), &of_method));
+        if of_method.is_empty() {
+            continue;
         }
+        if is_exact(&of_method) {
+            exact.push(method.title());
+            continue;
+        }
+        orders.extend(of_method.iter().find_map(|row| row.theory_order));
+        layers.push(series(method.title().to_owned(), color_of(*method), &of_method));
     }
-    for order in [1.0, 2.0, 4.0] {
-        layers.push(Layer::SlopeTriangle { order });
-    }
+    let slopes = [1.0, 2.0, 3.0, 4.0].into_iter().filter(|order| orders.contains(order));
+    layers.extend(slopes.clone().map(|order| Layer::SlopeTriangle { order }));
     let (x, y) = axes(quantity);
     Figure {
         id: format!("convergence-{}-{}", scene.replace('/', "-"), quantity.id()),
-        title: format!("{scene}: error against step, {}", precision.id()),
-        caption: "Halving the step halves the error of a first-order method, quarters that of a second-order one and \
-                  divides that of RK4 by 16, until rounding takes over."
-            .to_owned(),
+        title: format!("{}: error against step, {}", scene_title(scene), precision.id()),
+        caption: caption(slopes, &exact),
         x,
         y,
         layers,
@@ -81,7 +116,7 @@ fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
         for (i, precision) in Precision::ALL.into_iter().enumerate() {
             let chosen: Vec<&Row> =
                 rows.iter().copied().filter(|r| r.precision == precision && r.method == method.id()).collect();
-            if !chosen.is_empty() {
+            if !chosen.is_empty() && !is_exact(&chosen) {
                 layers.push(series(format!("{}, {}", method.title(), precision.id()), first_color + i, &chosen));
             }
         }
@@ -89,7 +124,7 @@ fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
     let (x, y) = axes(quantity);
     Figure {
         id: format!("precision-{}-{}", scene.replace('/', "-"), quantity.id()),
-        title: format!("{scene}: the same step in three precisions"),
+        title: format!("{}: the same step in three precisions", scene_title(scene)),
         caption:
             "f32 and f64 leave the straight line where rounding outweighs the method's error; double-double keeps \
                   its slope."

@@ -4,6 +4,7 @@ use integrator::methods::MethodId;
 use reports::{Axis, Figure, Layer, Series};
 
 use super::{Drift, Row};
+use crate::page::scene_title;
 use crate::run::Precision;
 use crate::study::{color_of, command, distinct};
 
@@ -26,6 +27,7 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
         .find(|&p| rows.iter().any(|row| row.precision == p))
         .unwrap_or(Precision::F64);
     let mut layers = Vec::new();
+    let mut exact = Vec::new();
     for method in MethodId::ALL {
         let run: Vec<&Row> =
             rows.iter().copied().filter(|r| r.method == method.id() && r.precision == precision).collect();
@@ -33,14 +35,19 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
             continue;
         }
         let mut largest = 0.0_f64;
-        let points = run
+        let points: Vec<[f64; 2]> = run
             .iter()
             .filter_map(|row| {
                 largest = largest.max(row.error_min?.abs()).max(row.error_max?.abs());
                 (largest > 0.0).then_some([row.t_s, largest])
             })
             .collect();
-        let failed = run.first().and_then(|row| row.failed_at_s).into_iter().collect();
+        let failed: Vec<f64> = run.first().and_then(|row| row.failed_at_s).into_iter().collect();
+        // Less than the last bit of the balance itself: no error that f64 could show, and decades of empty chart.
+        if failed.is_empty() && largest < 0.5 * f64::EPSILON * run[0].scale {
+            exact.push(method.title());
+            continue;
+        }
         let series = Series::new(method.title(), color_of(*method), points);
         layers.push(Layer::Series(Series { failed, marker: None, ..series }));
     }
@@ -67,8 +74,12 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
     };
     Figure {
         id: format!("drift-{}-{}", scene.replace('/', "-"), drift.id()),
-        title: format!("{scene}: {name} over a long run, {}", precision.id()),
-        caption: caption.to_owned(),
+        title: format!("{}: {name} over a long run, {}", scene_title(scene), precision.id()),
+        caption: if exact.is_empty() {
+            caption.to_owned()
+        } else {
+            format!("{caption} Less than one rounding: {}.", exact.join(", "))
+        },
         x: Axis::log("time (s)"),
         y: Axis::log(format!("largest {name} so far ({unit})")),
         layers,

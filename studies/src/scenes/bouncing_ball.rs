@@ -185,6 +185,7 @@ impl Scene for BouncingBall {
     fn info(&self) -> Info {
         Info {
             about: "a ball whose bounces are seen at the end of a step: no method is better than first order",
+            equation: r"\ddot x = -g;\quad x < 0,\ v < 0:\ v\to -e\,v",
             source: "parabolas and a geometric series (E. Falcon et al., Eur. Phys. J. B 3 (1998) 45)",
             horizon_s: 2.25,
             time_scale_s: self.impact_speed().to_f64() / self.gravity,

@@ -68,6 +68,7 @@ impl Scene for BoxTumbling {
     fn info(&self) -> Info {
         Info {
             about: "a box thrown and spun nearly about its intermediate axis: the setting of a published engine benchmark",
+            equation: r"\ddot{\mathbf x} = \mathbf g,\quad I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
             source: "Galilei 1638 and Jacobi 1849; setting of Peters and Hsu 2014 (Gazebo)",
             horizon_s: 0.75,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),

@@ -109,6 +109,7 @@ impl Scene for ChargedParticle {
     fn info(&self) -> Info {
         Info {
             about: "a charge in crossed fields: the force depends on the velocity, and both Eulers gain energy alike",
+            equation: r"m\,\dot{\mathbf v} = q\,(\mathbf E + \mathbf v\times\mathbf B)",
             source: "J. D. Jackson, Classical Electrodynamics (1999), 12.2 and 12.3",
             horizon_s: 2.25,
             time_scale_s: 1.0 / self.gyration(),

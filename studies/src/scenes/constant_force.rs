@@ -61,6 +61,7 @@ impl Scene for ConstantForce {
     fn info(&self) -> Info {
         Info {
             about: "a projectile in R^3: every polynomial-exact method is exact, the Eulers are off by -+ a t h / 2",
+            equation: r"m\,\ddot{\mathbf x} = \mathbf F",
             source: "x0 + v0 t + a t^2 / 2 (Galilei 1638)",
             horizon_s: 1.5,
             time_scale_s: 1.0,

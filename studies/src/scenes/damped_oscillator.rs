@@ -80,6 +80,7 @@ impl Scene for DampedOscillator {
     fn info(&self) -> Info {
         Info {
             about: "a damped mass on a spring: under-damped, critical (a double root) or over-damped (two rates)",
+            equation: r"m\,\ddot x = -k\,x - c\,\dot x,\quad c = 2\zeta\sqrt{k\,m}",
             source: "elementary",
             horizon_s: 2.75,
             time_scale_s: (self.mass / self.stiffness).sqrt(),

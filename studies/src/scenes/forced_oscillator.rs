@@ -81,6 +81,7 @@ impl Scene for ForcedOscillator {
     fn info(&self) -> Info {
         Info {
             about: "a driven oscillator: the force depends on time, so that the stage times of a method count",
+            equation: r"m\,\ddot x = -k\,x - c\,\dot x + F\cos\Omega t",
             source: "elementary; the response as a divided difference of exponentials",
             horizon_s: 2.75,
             time_scale_s: (self.mass / self.stiffness).sqrt().min(1.0 / self.drive.max(f64::MIN_POSITIVE)),

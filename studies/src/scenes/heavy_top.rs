@@ -69,6 +69,7 @@ impl Scene for HeavyTop {
     fn info(&self) -> Info {
         Info {
             about: "a top that precesses and nutates under gravity: the torque depends on the attitude",
+            equation: r"I\,\dot{\omega} = I\omega\times\omega + m g l\,\mathbf e_3\times R^{T}\mathbf d,\quad \dot q = \tfrac12\,q\,\omega,\quad \mathbf d = (0, 0, -1)",
             source: "Lagrange 1788, by elliptic integrals",
             horizon_s: 1.75,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),

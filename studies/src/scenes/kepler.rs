@@ -80,6 +80,7 @@ impl Scene for Kepler {
         let (a, e) = (self.semi_major, self.eccentricity);
         Info {
             about: "a planet on an ellipse: energy, angular momentum and the turning of the ellipse over many orbits",
+            equation: r"\ddot{\mathbf r} = -\mu\,\frac{\mathbf r}{|\mathbf r|^3}",
             source: "Kepler's equation (J. M. A. Danby, Fundamentals of Celestial Mechanics (1988), 6.3)",
             horizon_s: 2.25,
             // The angle of the pericentre passage: (1 - e)^(3/2) of the mean motion's.

@@ -89,6 +89,7 @@ impl Scene for LinearDrag {
     fn info(&self) -> Info {
         Info {
             about: "a projectile with drag -c v: the simplest force that depends on the velocity",
+            equation: r"m\,\dot{\mathbf v} = m\,\mathbf g - c\,\mathbf v",
             source: "elementary (I. Newton, Principia (1687), book II, section I)",
             horizon_s: 2.25,
             time_scale_s: 1.0 / self.k(),

@@ -133,6 +133,7 @@ impl Scene for Manufactured {
     fn info(&self) -> Info {
         Info {
             about: "a prescribed motion of a rigid body under loads that depend on everything: no term goes untested",
+            equation: r"m\,\ddot{\mathbf x} = \mathbf F(t, \mathbf x, \mathbf v, q),\quad I\,\dot{\omega} = I\omega\times\omega + \tau(t, \mathbf x, \mathbf v, q, \omega)",
             source: "manufactured solution (Roache 2002)",
             horizon_s: 1.75,
             time_scale_s: 1.0 / self.frequency,

@@ -90,6 +90,7 @@ impl Scene for Oscillator {
         let time_scale_s = 1.0 / self.omega();
         Info {
             about: "a mass on a spring with a general phase: explicit Euler gains energy, semi-implicit Euler does not",
+            equation: r"m\,\ddot x = -k\,x",
             source: "elementary",
             horizon_s: 2.75,
             time_scale_s,

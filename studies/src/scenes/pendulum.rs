@@ -115,6 +115,7 @@ impl Scene for Pendulum {
     fn info(&self) -> Info {
         Info {
             about: "a pendulum with wide swings: libration, rotation, and the slow passage between them",
+            equation: r"\ddot\theta = -\frac{g}{l}\sin\theta",
             source: "Jacobi's elliptic functions (E. T. Whittaker, Analytical Dynamics (1937), section 44)",
             horizon_s: 2.75,
             time_scale_s: 1.0 / self.omega0().to_f64(),

@@ -76,6 +76,7 @@ impl Scene for PrincipalAxisTorque {
     fn info(&self) -> Info {
         Info {
             about: "spun up about a principal axis: no gyroscopic term, the Eulers' attitude is off by -+ alpha t h / 2",
+            equation: r"I_k\,\dot\omega_k = \tau_k,\quad \dot q = \tfrac12\,q\,\omega_k\mathbf e_k",
             source: "elementary",
             horizon_s: 2.25,
             time_scale_s: 1.0 / self.omega.abs().max(f64::MIN_POSITIVE),

@@ -119,6 +119,7 @@ impl Scene for QuadraticDrag {
     fn info(&self) -> Info {
         Info {
             about: "a fall with drag -c v |v|: smooth while it falls, with a kink of the force at the apex of a throw",
+            equation: r"m\,\dot v = m\,g - c\,v\,|v|",
             source: "E. J. Routh, Dynamics of a Particle (1898), article 117",
             horizon_s: 2.75,
             time_scale_s: 1.0 / self.terminal().1.to_f64(),

@@ -56,6 +56,7 @@ impl Scene for SphereTorque {
     fn info(&self) -> Info {
         Info {
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
+            equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",
             source: "Zener 1932 (Landau-Zener), by Kummer's function",
             horizon_s: 2.25,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),

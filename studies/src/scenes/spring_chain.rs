@@ -130,6 +130,7 @@ impl Scene for SpringChain {
     fn info(&self) -> Info {
         Info {
             about: "sixteen masses and springs: the stiffest mode sets the step, whether it moves or not",
+            equation: r"m\,\ddot x_i = k\,(x_{i-1} - 2x_i + x_{i+1}),\quad i = 1,\dots,16,\quad x_0 = x_{17} = 0",
             source: "normal modes (A. L. Fetter, J. D. Walecka, Theoretical Mechanics (1980), section 24)",
             horizon_s: 2.25,
             time_scale_s: 1.0 / self.stiffest(),

@@ -79,6 +79,7 @@ impl Scene for SymmetricTop {
     fn info(&self) -> Info {
         Info {
             about: "a free body with an axis of symmetry: it precesses about the momentum at a constant rate",
+            equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_1, I_3)",
             source: "elementary (Landau and Lifshitz, Mechanics, section 35)",
             horizon_s: 2.25,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),

@@ -59,6 +59,7 @@ impl Scene for TorqueFreeSpin {
     fn info(&self) -> Info {
         Info {
             about: "a free body with three unequal moments of inertia: only the gyroscopic term acts",
+            equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_2, I_3)",
             source: "Jacobi 1849; attitude by Legendre's third integral (E. Celledoni et al., SIAM J. Sci. Comput. 30 (2008))",
             horizon_s: 2.25,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),

@@ -3,6 +3,7 @@
 use integrator::methods::MethodId;
 use reports::{Axis, AxisName, Cells, Figure, Layer, Line, Marker, Palette, Scale, Series};
 
+use super::failure::Failure;
 use super::maps::{self, Grid};
 use super::models::{Scheme, modulus, stability_function};
 use super::spin::{FACTOR_TOLERANCE, SpinScheme, blow_up_bound};
@@ -78,16 +79,18 @@ fn damped(rows: &[Row], scheme: Scheme) -> Option<Figure> {
         }
         Scheme::Listed(_) => "The boundary measured on running oscillators follows theory's curve cell by cell.",
     };
-    let x = Axis::linear("step, h omega").with_range(maps::DAMPED.x[0], maps::DAMPED.x[1]);
-    let y = Axis::linear("damping ratio zeta").with_range(maps::DAMPED.y[0], maps::DAMPED.y[1]);
+    let x = Axis::linear("step, h ω").with_range(maps::DAMPED.x[0], maps::DAMPED.x[1]);
+    let y = Axis::linear("damping ratio ζ").with_range(maps::DAMPED.y[0], maps::DAMPED.y[1]);
     let title = format!("Damped oscillator: {}", scheme.title());
     Some(figure(&format!("map-damped-{}", scheme.id()), title, caption, x, y, layers, "damped-oscillator"))
 }
 
 fn region(rows: &[Row], method: MethodId) -> Option<Figure> {
     let rows = chosen(rows, Part::Region, method.id())?;
-    let map =
-        cells(&rows, maps::REGION, kinds(&["shrinks", "grows"]), |row| Some(f64::from(u8::from(row.measured? > 1.0))));
+    let map = cells(&rows, maps::REGION, kinds(&["shrinks", "grows"]), |row| {
+        // No number stands for a pole.
+        Some(f64::from(u8::from(row.measured.is_none_or(|r| r > 1.0))))
+    });
     let layers = vec![Layer::Cells(map), curve("theory, |R| = 1", region_boundary(method))];
     let caption = match method {
         MethodId::ExplicitEuler => "A disc that only touches the imaginary axis: every undamped oscillation grows.",
@@ -97,9 +100,9 @@ fn region(rows: &[Row], method: MethodId) -> Option<Figure> {
     };
     let [left, right] = maps::REGION.x;
     let [low, high] = maps::REGION.y;
-    let x = Axis::linear("Re h lambda").with_range(left, right);
-    let y = Axis::linear("Im h lambda").with_range(low, high);
-    let title = format!("y' = lambda y: where one step of {} shrinks y", method.title());
+    let x = Axis::linear("Re h λ").with_range(left, right);
+    let y = Axis::linear("Im h λ").with_range(low, high);
+    let title = format!("y' = λ y: where one step of {} shrinks y", method.title());
     Some(figure(&format!("region-{}", method.id()), title, caption, x, y, layers, "oscillator"))
 }
 
@@ -174,7 +177,7 @@ fn spin(rows: &[Row], scheme: SpinScheme) -> Option<Figure> {
             "The nutation of every body but a sphere grows at every step: semi-implicit Euler conserves nothing here."
         }
         SpinScheme::WorldExplicit => {
-            "Only the attitude moves with the old omega, and a different map results: the nutation of a rod dies out, that of a disc grows."
+            "Only the attitude moves with the old ω, and a different map results: the nutation of a rod dies out, that of a disc grows."
         }
         SpinScheme::Momentum => "The nutation of a disc (above the line) grows, that of a rod (below) dies out.",
         SpinScheme::BodyImplicit => "The nutation of every body dies out, whether or not it should.",
@@ -183,8 +186,8 @@ fn spin(rows: &[Row], scheme: SpinScheme) -> Option<Figure> {
         }
         SpinScheme::BodyMidpoint => "The nutation of every body is kept at every step.",
     };
-    let x = Axis::linear("spin in one step, h omega3 (rad)").with_range(maps::SPIN.x[0], maps::SPIN.x[1]);
-    let y = Axis::linear("ratio of inertia I3 / I1").with_range(maps::SPIN.y[0], maps::SPIN.y[1]);
+    let x = Axis::linear("spin in one step, h ω₃ (rad)").with_range(maps::SPIN.x[0], maps::SPIN.x[1]);
+    let y = Axis::linear("ratio of inertia I₃ / I₁").with_range(maps::SPIN.y[0], maps::SPIN.y[1]);
     let title = format!("Spinning body: {}", scheme.title());
     Some(figure(&format!("map-spin-{}", scheme.id()), title, caption, x, y, layers, "torque-free-spin"))
 }
@@ -195,13 +198,22 @@ fn kepler(rows: &[Row], method: MethodId) -> Option<Figure> {
     let map = cells(&rows, maps::KEPLER, palette, |row| row.measured);
     let grid = Cells { x0: map.x0.exp2(), x1: map.x1.exp2(), ..map };
     let eccentricities = (0..=200).map(|i| f64::from(i) * maps::KEPLER.y[1] / 200.0);
-    // h (angular velocity of a circle through the pericentre) = 2.
-    let points = eccentricities.map(|e| [(1.0 - e).powf(1.5) / std::f64::consts::PI, e]).collect();
-    let layers = vec![Layer::Cells(grid), curve("h omega = 2 at the pericentre", points)];
+    // h (angular velocity of a circle through the pericentre) = the limit on the oscillator.
+    let (limit, label) = if method == MethodId::Rk4 {
+        (8.0_f64.sqrt(), "h ω = √8 at the pericentre")
+    } else {
+        (2.0, "h ω = 2 at the pericentre")
+    };
+    let points = eccentricities.map(|e| [limit * (1.0 - e).powf(1.5) / std::f64::consts::TAU, e]).collect();
+    let layers = vec![Layer::Cells(grid), curve(label, points)];
     let x = Axis::log("step over period").with_range(maps::KEPLER.x[0].exp2(), maps::KEPLER.x[1].exp2());
     let y = Axis::linear("eccentricity").with_range(maps::KEPLER.y[0], maps::KEPLER.y[1]);
     let title = format!("Kepler: how many orbits {} survives", method.title());
-    let caption = "The pericentre sets the step: near the curve not one orbit survives, and the more eccentric, the smaller the step.";
+    let caption = if method == MethodId::Rk4 {
+        "The pericentre sets the step. RK4 loses energy there long before its limit of stability (dashed): the orbit shrinks."
+    } else {
+        "The pericentre sets the step: near the curve not one orbit survives, and the more eccentric, the smaller the step."
+    };
     Some(figure(&format!("map-kepler-{}", method.id()), title, caption, x, y, layers, "kepler"))
 }
 
@@ -214,7 +226,7 @@ fn pendulum(rows: &[Row]) -> Option<Figure> {
         "Linear theory promises 2 at any amplitude; a pendulum that swings widely goes over the top much earlier.";
     let title = "Pendulum: the largest step falls with the amplitude".to_owned();
     let x = Axis::linear("amplitude (rad)").with_range(0.0, 3.2);
-    let y = Axis::linear("largest h omega").with_range(0.0, 2.4);
+    let y = Axis::linear("largest h ω").with_range(0.0, 2.4);
     Some(figure("pendulum-amplitude", title, caption, x, y, vec![Layer::Series(series), guide], "pendulum"))
 }
 
@@ -223,7 +235,7 @@ fn about(id: &str) -> Option<(&'static str, &'static str, &'static str, &'static
     Some(match id {
         "exponential-growth" => (
             "Exponential growth: a straight line on a logarithmic axis",
-            "Just below h omega = 2 Verlet's error stays bounded, just above it grows by the same factor in every step.",
+            "Just below h ω = 2 Verlet's error stays bounded, just above it grows by the same factor in every step.",
             "oscillator",
             "largest displacement so far (m)",
             true,
@@ -293,19 +305,23 @@ fn picture(rows: &[Row], id: &str) -> Option<Figure> {
     let of: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Picture && row.scene == id).collect();
     let mut layers = Vec::new();
     for (i, name) in distinct(of.iter().map(|row| row.method.as_str())).into_iter().enumerate() {
-        let points: Vec<[f64; 2]> =
-            of.iter().filter(|row| row.method == name).filter_map(|row| Some([row.value?, row.measured?])).collect();
+        let run: Vec<&&Row> = of.iter().filter(|row| row.method == name).collect();
+        let points: Vec<[f64; 2]> = run.iter().filter_map(|row| Some([row.value?, row.measured?])).collect();
+        // Where the run ends before its time, the reader must see that it does.
+        let ends = |row: &&&Row| matches!(row.failure, Failure::NewtonNotConverging | Failure::FiniteTimeBlowUp);
+        let failed = points.last().filter(|_| run.iter().any(|row| ends(&row))).map(|[t, _]| *t).into_iter().collect();
         layers.push(if name == "exact" {
             // A series, so that the axis makes room for it.
             Layer::Series(Series { marker: None, line: Some(Line::Dashed), ..Series::new("exact", 7, points) })
         } else {
             let marker = (points.len() <= 64).then(|| Marker::of_color(i));
-            Layer::Series(Series { marker, ..Series::new(name, i, points) })
+            let words = name.replace("omega", "ω").replace("zeta", "ζ");
+            Layer::Series(Series { marker, failed, ..Series::new(words, i, points) })
         });
     }
     if id == "finite-time-blow-up" {
         for n in [64.0, 128.0, 256.0] {
-            let label = format!("bound, 1/{n} s");
+            let label = format!("not before, h = 1/{n} s");
             layers.push(Layer::Guide { axis: AxisName::X, at: blow_up_bound(1.0 / n), label });
         }
     }

@@ -113,7 +113,10 @@ impl MapRow {
             }
             MapRow::Region(method) => {
                 let (measured, theory) = (amplification(method, (x, y)), modulus(stability_function(method, (x, y))));
-                row(Part::Region, "test-equation", method.id(), "|R|", "Im h lambda", measured, theory)
+                let row = row(Part::Region, "test-equation", method.id(), "|R|", "Im h lambda", measured, theory);
+                // At a pole of R there is no number.
+                let finite = |x: Option<f64>| x.filter(|x| x.is_finite());
+                Row { measured: finite(row.measured), theory: finite(row.theory), ..row }
             }
             MapRow::Kepler(method) => {
                 let orbits = orbits_survived(method, y, (-x).exp2(), MOST_ORBITS);

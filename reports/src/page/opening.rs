@@ -1,0 +1,92 @@
+//! What a busy reader sees first: verdicts by study, what is broken, and the findings.
+
+use super::{Finding, Page, mark};
+use crate::{Verdict, claim, plot};
+use maud::{Markup, PreEscaped, html};
+
+impl Page {
+    pub(super) fn opening(&self) -> Markup {
+        html! {
+            div.opening {
+                h1 { (self.title) }
+                p.lead { (self.lead) }
+                @if !self.links.is_empty() {
+                    p.links { @for (text, file) in &self.links { a.button href=(file) { (text) } " " } }
+                }
+                (self.verdicts())
+                (self.broken())
+                (self.findings())
+            }
+        }
+    }
+
+    fn verdicts(&self) -> Markup {
+        let counts = claim::counts(self.claims());
+        let all =
+            [(counts.holds, Verdict::Holds), (counts.broken, Verdict::Broken), (counts.not_tested, Verdict::NotTested)];
+        let studies = self.sections.iter().map(|section| (section, claim::counts(section.claims())));
+        let judged = studies.filter(|(_, c)| c.holds + c.broken + c.not_tested > 0);
+        html! {
+            ul.counts aria-label="Verdicts of all claims" {
+                @for (count, verdict) in all { li { strong { (count) } " " (mark(verdict)) } }
+            }
+            table.summary {
+                caption { "Claims of each study" }
+                thead { tr { th scope="col" { "Study" } @for head in ["Hold", "Broken", "Not tested"] { th scope="col" { (head) } } } }
+                tbody {
+                    @for (section, c) in judged {
+                        tr {
+                            th scope="row" { a href={ "#" (section.id) } { (section.title) } }
+                            @for (count, class) in [(c.holds, "holds"), (c.broken, "broken"), (c.not_tested, "not-tested")] {
+                                td class=[(count > 0).then_some(class)] { (count) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn broken(&self) -> Markup {
+        let broken: Vec<_> = self.claims().into_iter().filter(|claim| claim.verdict == Verdict::Broken).collect();
+        html! {
+            @if !broken.is_empty() {
+                h2 #broken { "Broken claims" }
+                ul {
+                    @for claim in broken {
+                        li { a href={ "#claim-" (claim.id) } { (claim.statement) } ": measured " (claim.measured) ", bound " (claim.bound) }
+                    }
+                }
+            }
+        }
+    }
+
+    fn findings(&self) -> Markup {
+        html! {
+            @if !self.findings.is_empty() {
+                h2 #findings { "What matters" }
+                ol.findings { @for (i, finding) in self.findings.iter().enumerate() { li { (self.finding(i, finding)) } } }
+            }
+        }
+    }
+
+    fn finding(&self, index: usize, finding: &Finding) -> Markup {
+        let drawn = finding.figure.as_ref().and_then(|id| self.figure(id));
+        html! {
+            div {
+                h3 { (finding.title) }
+                @if !finding.number.is_empty() { p.number { (finding.number) } }
+                p { (finding.text) }
+                p.source {
+                    @if let Some(id) = &finding.claim { a href={ "#claim-" (id) } { "The claim" } ". " }
+                    @if let Some((figure, _)) = drawn { a href={ "#figure-" (figure.id) } { "The chart in its study" } "." }
+                }
+            }
+            @if let Some((figure, svg)) = drawn {
+                div.scroll tabindex="0" role="region" aria-label=(figure.title) {
+                    (PreEscaped(plot::inline(svg, &format!("finding-{index}"))))
+                }
+            }
+        }
+    }
+}
