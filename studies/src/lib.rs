@@ -28,3 +28,4 @@ pub mod special;
 pub mod stability;
 pub mod study;
 pub mod sweep;
+pub mod tradeoff;

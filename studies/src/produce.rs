@@ -11,6 +11,7 @@ use crate::provenance;
 use crate::rotation::Rotation;
 use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
+use crate::tradeoff::Tradeoff;
 
 /// What a study has made: files to be written, and its part of the page.
 pub struct Product {
@@ -33,6 +34,7 @@ pub fn all(selection: &mut Selection) -> Result<Vec<Product>, Error> {
         of::<Rotation>(selection)?,
         of::<Adequacy>(selection)?,
         of::<Stability>(selection)?,
+        of::<Tradeoff>(selection)?,
     ])
 }
 
