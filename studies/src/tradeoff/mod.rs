@@ -5,16 +5,21 @@
 
 pub mod advice;
 pub mod candidate;
+mod claims;
 pub mod clock;
+mod figures;
 pub mod front;
 pub mod iso;
 pub mod limit;
 pub mod runs;
 pub mod search;
 mod speak;
+mod tables;
 pub mod timed;
 pub mod truth;
+pub mod ucurve;
 pub mod vanish;
+pub mod verdict;
 
 use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
@@ -60,6 +65,8 @@ pub struct Row {
     pub error: Option<f64>,
     /// Largest distance from the run of the same step in the next finer arithmetic, at the same times.
     pub rounding: Option<f64>,
+    /// The largest size of the configuration in the exact motion, in the same unit; 1 for an attitude.
+    pub scale: Option<f64>,
     /// Evaluations of the force law.
     pub evaluations: u64,
     /// Number of steps of the run that was timed.
@@ -100,14 +107,17 @@ impl Study for Tradeoff {
         runs::time(selection, &mut rows);
         rows
     }
-    fn tables(_rows: &[Row]) -> Result<Vec<Derived>, Error> {
-        Ok(Vec::new())
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        tables::all(rows)
     }
-    fn figures(_rows: &[Row]) -> Vec<Figure> {
-        Vec::new()
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        figures::all(rows)
     }
-    fn claims(_rows: &[Row]) -> Vec<Claim> {
-        Vec::new()
+    fn is_on_page(figure: &Figure) -> bool {
+        figures::ON_PAGE.contains(&figure.id.as_str())
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        claims::all(rows)
     }
 }
 
@@ -126,6 +136,7 @@ impl Row {
             error_end: None,
             error: None,
             rounding: None,
+            scale: None,
             evaluations: 0,
             timed_steps: None,
             least_ns_per_step: None,

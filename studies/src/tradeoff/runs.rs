@@ -113,6 +113,7 @@ impl Job<'_> {
             error_end: errors.map(|e| e.end),
             error: errors.map(|e| e.largest),
             rounding: finer.and_then(|finer| apart(run, finer)),
+            scale: Some(self.truth.scale()),
             evaluations: run.evaluations,
             ..Row::new(Part::Run, self.scene.id(), self.candidate.id(), precision, steps, end_s / steps as f64)
         }

@@ -79,7 +79,9 @@ fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut Strin
     line("method", format!("{} in {}", best.candidate.label(), best.precision.id()));
     line("step", format!("{:.6} s, {} steps; {}", best.h_s, best.tried.steps, in_a_period(asked.need.scene, best.h_s)));
     if let Some(frames) = asked.frames {
-        line("frame", format!("{} substeps, {}", best.tried.steps / frames, cost_of_frame(asked, best)));
+        let substeps = best.tried.steps / frames;
+        let plural = if substeps == 1 { "" } else { "s" };
+        line("frame", format!("{substeps} substep{plural}, {}", cost_of_frame(asked, best)));
     }
     line("cost", cost(best));
     let limit = limit(asked.need.scene, best.candidate, best.precision);

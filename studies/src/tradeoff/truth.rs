@@ -64,6 +64,12 @@ impl<'a> Truth<'a> {
         over(run.seen.iter().map(|(step, seen)| of_configuration(seen, &self.at(*step, steps))))
     }
 
+    /// The largest size of the configuration: |x| in m, an angle in rad, 1 for an attitude.
+    pub fn scale(&self) -> f64 {
+        let of = |quantity| self.looks.iter().map(move |seen| seen.scale(quantity)).fold(0.0, f64::max);
+        of(Quantity::Position).max(of(Quantity::Attitude))
+    }
+
     /// Units of the errors of this scene: `m`, `rad`, or both.
     pub fn unit(&self) -> &'static str {
         let has = |quantity| self.looks[0].get(quantity).is_some();
