@@ -175,9 +175,9 @@ fn a_body_at_rest_stays_where_it_is_below_the_predicted_step_and_falls_above() {
             );
         }
     }
-    // sqrt(2^-23 / (2 * 9.75)): by hand.
+    // sqrt(2^-24 / 9.75): by hand.
     assert!(
-        (predicted_s(Precision::F32, 1.5) / 7.818_78e-5 - 1.0).abs() < 1e-5,
+        (predicted_s(Precision::F32, 1.5) / 7.818_76e-5 - 1.0).abs() < 1e-5,
         "{}",
         predicted_s(Precision::F32, 1.5)
     );

@@ -2,6 +2,7 @@
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
+use reports::Marker;
 
 use super::timed::{Lap, Laps};
 use crate::rotation::scheme::{Rule, Scheme};
@@ -93,6 +94,13 @@ impl Candidate {
             Rule::General(method) => color_of(method),
             Rule::Rigid(step) => MethodId::ALL.len() + RigidStep::ALL.iter().position(|s| *s == step).unwrap_or(0) % 2,
         }
+    }
+
+    /// The shape of a point where the colour alone does not tell the step for rigid bodies.
+    pub fn marker(self) -> Option<Marker> {
+        let Rule::Rigid(step) = self.scheme.rule else { return None };
+        let shared = RigidStep::ALL.iter().position(|s| *s == step).is_some_and(|i| i >= 2);
+        shared.then(|| Marker::ALL[(self.color() + 2) % Marker::ALL.len()])
     }
 
     /// Evaluations of the force law in a step, where the formula says so: an implicit step takes as many as it needs.

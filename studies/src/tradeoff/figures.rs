@@ -6,7 +6,7 @@ use reports::{Axis, Figure, Layer, Line, Series};
 
 use super::candidate::Candidate;
 use super::iso::sweeps;
-use super::ucurve::{Minimum, minima};
+use super::ucurve::{INDEPENDENT, Minimum, minima};
 use super::{Charge, Part, Row};
 use crate::rotation::Rule;
 use crate::run::Precision;
@@ -18,7 +18,7 @@ pub(super) const ON_PAGE: [&str; 5] = [
     "work-time-pendulum",
     "work-time-kepler",
     "work-time-tennis-racket",
-    "u-curve-oscillator",
+    "u-curve-tennis-racket",
 ];
 
 /// Errors above this are no errors of a method that follows the motion at all.
@@ -97,7 +97,7 @@ fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
         _ => Line::Solid,
     };
     let series = Series::new(candidate.label(), candidate.color(), shown.iter().map(|(_, point)| *point).collect());
-    Some(Series { whiskers, line: Some(line), ..series })
+    Some(Series { whiskers, line: Some(line), marker: candidate.marker().or(series.marker), ..series })
 }
 
 /// Of a rigid body every method with the angular velocity of the body; with that of the world, which moves alike, only what shows
@@ -141,7 +141,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         id: format!("u-curve-{}", first.scene.replace('/', "-")),
         title: format!("{}: where a smaller step is worse", first.scene),
         caption: "Truncation falls with the step, rounding grows with the number of steps, and between them lies the best step. \
-                  Dashed without marks: A / n^p + eps S sqrt(n), which nothing was fitted to."
+                  Without marks: A / n^p + eps S sqrt(n) / 10, to which nothing was fitted."
             .to_owned(),
         x: Axis::log("step size h (s)"),
         y: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
@@ -154,7 +154,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
 
 /// Truncation and independent roundings, over the steps of a sweep.
 fn model(minimum: &Minimum, sweep: &[&Row]) -> Layer {
-    let rounding = minimum.precision.epsilon() * sweep[0].scale.unwrap_or(1.0);
+    let rounding = INDEPENDENT * minimum.precision.epsilon() * sweep[0].scale.unwrap_or(1.0);
     let point = |row: &&Row| {
         let n = row.steps as f64;
         [row.h_s, minimum.truncation / n.powi(minimum.order as i32) + rounding * n.sqrt()]

@@ -5,7 +5,7 @@ use crate::run::Precision;
 use crate::study::distinct;
 
 /// Errors at which prices are compared, in m or rad.
-pub const LEVELS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+pub const LEVELS: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6];
 /// Halvings beyond a run that have to meet the level too, where the sweep has them: an error that passes through zero meets it
 /// by luck.
 const DEPTH: usize = 2;

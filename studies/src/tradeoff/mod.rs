@@ -7,6 +7,8 @@ pub mod advice;
 pub mod candidate;
 mod claims;
 pub mod clock;
+mod cost_tables;
+mod duel_tables;
 mod figures;
 pub mod front;
 pub mod iso;

@@ -27,7 +27,7 @@ fn halvings(candidate: Candidate, precision: Precision, quick: bool) -> Option<u
         (false, false, 1) => 14,
         (false, false, _) => 11,
         (true, true, _) => 4,
-        (true, false, 1) => 9,
+        (true, false, 1) => 8,
         (true, false, _) => 6,
     })
 }

@@ -1,8 +1,10 @@
 //! The U-curve: the error falls with the step until rounding takes over, and then grows.
 //!
 //! error(n) = A / n^p + R(n): the first from the same method in the next finer arithmetic, the second the sum of n roundings of
-//! half a unit in the last place of numbers of the size S. Roundings that are independent add up to eps S sqrt(n), roundings that
-//! all go one way to eps S n. Source: P. Henrici, Discrete Variable Methods in Ordinary Differential Equations (1962), 1.4.
+//! numbers of the size S. It lies between two models. At least, each step rounds once, independently of the others: ulp / sqrt 12
+//! in the root mean square, with an ulp of (eps / 2 .. eps) |x| and |x| of about S / sqrt 2, which is R = eps S sqrt(n) / 10. At
+//! most, each step loses a whole eps S, and always the same way: R = eps S n. A motion that forgets its errors has less.
+//! Source: P. Henrici, Discrete Variable Methods in Ordinary Differential Equations (1962), 1.4.
 
 use integrator::methods::MethodId;
 use reports::Table;
@@ -38,7 +40,7 @@ pub struct Minimum {
     pub truncation: f64,
     /// The order p.
     pub order: u32,
-    /// Steps of the minimum of A / n^p + eps S sqrt(n).
+    /// Steps of the minimum of A / n^p + eps S sqrt(n) / 10.
     pub random_steps: f64,
     /// Its error.
     pub random_error: f64,
@@ -48,6 +50,8 @@ pub struct Minimum {
     pub biased_error: f64,
 }
 
+/// Root mean square of one rounding, in eps S.
+pub const INDEPENDENT: f64 = 0.1;
 /// A minimum is one where the error has grown again by this factor at the end of the sweep.
 const GROWN: f64 = 2.0;
 
@@ -79,12 +83,12 @@ fn minimum(sweep: &[&Row], all: &[Vec<&Row>]) -> Option<Minimum> {
     let reference = all.iter().find(|s| s[0].method == first.method && s[0].precision == finer)?;
     let truncation = truncation(reference, best.steps, candidate.scheme.order())?;
     let (eps, scale, p) = (first.precision.epsilon(), first.scale?, f64::from(candidate.scheme.order()));
-    let model = |power: f64| {
-        let rounding = eps * scale;
+    let model = |rounding: f64, power: f64| {
         let steps = (p * truncation / (power * rounding)).powf(1.0 / (p + power));
         (steps, truncation / steps.powf(p) + rounding * steps.powf(power))
     };
-    let ((random_steps, random_error), (biased_steps, biased_error)) = (model(0.5), model(1.0));
+    let ((random_steps, random_error), (biased_steps, biased_error)) =
+        (model(INDEPENDENT * eps * scale, 0.5), model(eps * scale, 1.0));
     Some(Minimum {
         scene: first.scene.clone(),
         method: first.method.clone(),
@@ -151,7 +155,7 @@ pub fn table(rows: &[Row]) -> Result<Derived, Error> {
     Ok(Derived {
         name: "tradeoff-u-curves",
         caption: "Where a smaller step makes it worse: the least error of a sweep, and between which minima theory puts it, with \
-                  roundings that all go one way (eps n) and roundings that are independent (eps sqrt n)",
+                  roundings that all go one way (eps S n) and roundings that are independent (eps S sqrt(n) / 10)",
         csv: reports::write_csv(&minima)?,
         table,
     })
