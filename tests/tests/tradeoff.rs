@@ -189,17 +189,25 @@ fn a_body_at_rest_stays_where_it_is_below_the_predicted_step_and_falls_above() {
 fn a_u_curve_has_its_minimum_inside_the_sweep() {
     let minima = minima(rows());
     let of = |method: &str, precision| {
-        minima.iter().find(|m| m.scene == "oscillator" && m.method == method && m.precision == precision)
+        minima.iter().find(|m| m.scene == "tennis-racket" && m.method == method && m.precision == precision)
     };
-    for (method, precision) in [("velocity-verlet", Precision::F32), ("rk4", Precision::F32), ("rk4", Precision::F64)] {
+    for (method, precision) in [
+        ("velocity-verlet/body-omega", Precision::F32),
+        ("rk4/body-omega", Precision::F32),
+        ("rk4/body-omega", Precision::F64),
+    ] {
         let found = of(method, precision).unwrap_or_else(|| panic!("{method} in {precision:?} has no minimum"));
         assert!(found.finest_error >= 2.0 * found.error, "{found:?}");
     }
     // Where the sweep ends before rounding is felt there is none.
-    assert!(of("semi-implicit-euler", Precision::F64).is_none() && of("rk4", Precision::DoubleDouble).is_none());
+    assert!(
+        of("semi-implicit-euler/body-omega", Precision::F64).is_none()
+            && of("rk4/body-omega", Precision::DoubleDouble).is_none()
+    );
 }
 
-/// RK4 is cheaper than semi-implicit Euler at 1e-4 and below wherever the motion is smooth: (C1 / e) against 4 (C4 / e)^(1/4).
+/// C1 / e against 4 (C4 / e)^(1/4): from 1e-2 to 1e-4 the factor grows by 100^(3/4) = 31, less a factor of two or so at each end,
+/// where RK4 meets 1e-2 with its coarsest run and semi-implicit Euler misses 1e-4 with its finest.
 #[test]
 fn semi_implicit_euler_is_dear_where_the_error_is_small() {
     let duels = duels(rows(), Charge::Evaluations);
@@ -210,7 +218,7 @@ fn semi_implicit_euler_is_dear_where_the_error_is_small() {
             Some(Factor::Of(x) | Factor::AtLeast(x)) => x,
             other => panic!("{scene}: {other:?}"),
         };
-        assert!(factor(1e-6) > 10.0 * factor(1e-2), "{scene}: {} at 1e-2, {} at 1e-6", factor(1e-2), factor(1e-6));
+        assert!(factor(1e-4) > 5.0 * factor(1e-2), "{scene}: {} at 1e-2, {} at 1e-4", factor(1e-2), factor(1e-4));
         assert!(!at(1e-6).semi_implicit_is_best());
     }
 }
@@ -218,22 +226,20 @@ fn semi_implicit_euler_is_dear_where_the_error_is_small() {
 /// The angular velocity of the world and of the body make the same motion with semi-implicit Euler, to rounding: the errors agree
 /// to the roundings of n steps, which the double-double run tells.
 #[test]
-fn storages_have_the_same_error_with_both_eulers_and_evaluate_alike() {
+fn storages_have_the_same_error_with_semi_implicit_euler_and_no_other_method() {
     let rows = of_scene("tennis-racket");
     let find = |method: &str, precision, steps| {
         rows.iter().find(|r| r.method == method && r.precision == precision && r.steps == steps).expect("a run")
     };
-    for method in ["explicit-euler", "semi-implicit-euler"] {
-        let [world, body] = ["world-omega", "body-omega"]
-            .map(|storage| find(&format!("{method}/{storage}"), Precision::DoubleDouble, 256));
+    let pair = |method: &str| {
+        ["world-omega", "body-omega"].map(|storage| find(&format!("{method}/{storage}"), Precision::DoubleDouble, 256))
+    };
+    for method in ["semi-implicit-euler", "explicit-euler", "rk4"] {
+        let [world, body] = pair(method);
         let (a, b) = (world.error.expect("finished"), body.error.expect("finished"));
-        assert!((a - b).abs() <= 1e-15 * a, "{method}: {a} and {b}");
+        assert_eq!((a - b).abs() <= 1e-15 * a, method == "semi-implicit-euler", "{method}: {a} and {b}");
         assert_eq!(world.evaluations, body.evaluations);
     }
-    // RK4 moves the two differently.
-    let [world, body] = ["rk4/world-omega", "rk4/body-omega"]
-        .map(|method| find(method, Precision::DoubleDouble, 256).error.expect("finished"));
-    assert!((world - body).abs() > 1e-6 * world, "{world} and {body}");
 }
 
 #[test]
@@ -302,7 +308,7 @@ fn advice_in_frames_takes_whole_substeps_and_budgets_are_kept_by_counting() {
     assert!(advice.possible && pick.tried.steps.is_multiple_of(240));
     assert!(pick.tried.error.is_some_and(|error| error <= 1e-3));
     assert!((pick.h_s * pick.tried.steps as f64 - 4.0).abs() < 1e-12);
-    assert!(advice.text.contains("substeps") && advice.text.contains("cannot be had"), "{}", advice.text);
+    assert!(advice.text.contains("substeps a frame") && advice.text.contains("twice the step"), "{}", advice.text);
     // The other way round: what the budget buys is an error.
     let budget = Question { budget_us: Some(50.0), error: None, ..question };
     let bought = advise(&chosen, budget).expect("a good question").picks[0].expect("something can be had");

@@ -52,6 +52,8 @@ pub struct Pick {
     pub cost: Option<Cost>,
 }
 
+/// Steps of a timed run.
+const TIMED_STEPS: u64 = 1024;
 /// Looks at a run that advice rests on, if frames do not set another number.
 const LOOKS: u64 = 64;
 
@@ -201,26 +203,32 @@ fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Result<Tried, Se
         })
         .collect();
     let picks: Vec<&mut Pick> = entries.iter_mut().filter_map(|entry| entry.found.as_mut().ok()).collect();
-    let tasks: Vec<Task> =
-        picks.iter().map(|pick| task(pick.candidate, pick.precision, pick.tried.steps, pick.h_s)).collect();
+    let of_pick = |pick: &&mut Pick| task(asked, pick.candidate, pick.precision, pick.tried.steps, pick.h_s);
+    let tasks: Vec<Task> = picks.iter().map(of_pick).collect();
     for (pick, cost) in picks.into_iter().zip(costs(asked.need.scene, &tasks, Care::ADVICE)) {
         pick.cost = cost;
     }
     entries
 }
 
-/// The first steps of a run, at its own length: those of an implicit method cost more when they are long.
-fn task(candidate: Candidate, precision: Precision, steps: u64, h_s: f64) -> Task {
-    let steps = steps.min(2048);
-    Task { candidate, precision, span: Span { end_s: h_s * steps as f64, steps } }
+/// What is timed for a step: an explicit one costs the same whatever its length, and is timed where the scene is at home; an
+/// implicit one takes more iterations when it is long, and is timed at its own length.
+fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u64, h_s: f64) -> Task {
+    let span = if candidate.scheme.is_implicit() {
+        let steps = steps.min(TIMED_STEPS);
+        Span { end_s: h_s * steps as f64, steps }
+    } else {
+        Span { end_s: asked.need.scene.scene().info().horizon_s, steps: TIMED_STEPS }
+    };
+    Task { candidate, precision, span }
 }
 
 /// The least error of every way within the budget: the steps that it pays for, or half of them and half again where rounding
 /// makes more of them worse.
 fn by_budget(asked: &Asked<'_>, selection: &Selection) -> Vec<Entry> {
     let ways = ways(asked, selection);
-    let info = asked.need.scene.scene().info();
-    let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(c, p, 1024, info.horizon_s / 1024.0)).collect();
+    let h_s = asked.need.scene.scene().info().horizon_s / TIMED_STEPS as f64;
+    let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(asked, c, p, TIMED_STEPS, h_s)).collect();
     let first = costs(asked.need.scene, &tasks, Care::FULL);
     let mut entries = timed(
         asked,

@@ -95,8 +95,8 @@ fn storage(rows: &[Row]) -> Result<Option<Derived>, Error> {
     }
     Ok((!lines.is_empty()).then_some(Derived {
         name: "tradeoff-storage",
-        caption: "The angular velocity of the body beside that of the world, which makes the same motion for both Eulers: what a \
-                  step costs",
+        caption: "The angular velocity of the body beside that of the world: the same motion with semi-implicit Euler, at a part of \
+                  the cost of a step",
         csv: reports::write_csv(&lines)?,
         table,
     }))

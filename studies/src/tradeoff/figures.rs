@@ -100,8 +100,8 @@ fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
     Some(Series { whiskers, line: Some(line), marker: candidate.marker().or(series.marker), ..series })
 }
 
-/// Of a rigid body every method with the angular velocity of the body; with that of the world, which moves alike, only what shows
-/// the difference in time.
+/// Of a rigid body every method with the angular velocity of the body; with that of the world, of which only the time differs with
+/// semi-implicit Euler, two for comparison.
 fn is_shown(candidate: Candidate, charge: Charge) -> bool {
     let of_world = candidate.is_rigid && candidate.scheme.storage == Storage::WorldOmega;
     match candidate.method() {

@@ -58,8 +58,11 @@ pub const MOST_STEPS: u64 = 1 << 20;
 pub const FINER: [f64; 8] = [1.04, 1.13, 1.27, 1.41, 1.62, 2.0, 2.83, 4.0];
 /// How finely the number of steps is found: one part in so many, or one step.
 const RESOLUTION: u64 = 128;
-/// Doublings over which a growing error is rounding, and not a start far from convergence.
-const GROWS: usize = 3;
+/// Doublings without a new least error after which rounding is to blame: a run that met a low error by luck is overtaken sooner by
+/// a method of first order, whose error falls by this power of two meanwhile.
+const STALLED: usize = 6;
+/// A least error above this may be one far from convergence.
+const CONVERGING: f64 = 0.1;
 
 /// One run with so many steps.
 pub fn attempt(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
@@ -131,16 +134,10 @@ fn narrow(first: u64, meets: impl Fn(&Tried) -> bool, run: impl Fn(u64) -> Tried
 
 /// Whether the doublings so far tell that no more of them will do.
 fn hopeless(doubled: &[Tried], level: f64, candidate: Candidate) -> Option<Search> {
-    let errors: Vec<f64> = doubled.iter().filter_map(|tried| tried.error).collect();
-    let growing =
-        errors.len() > GROWS + 4 && errors[errors.len() - 1 - GROWS..].windows(2).all(|pair| pair[1] > pair[0]);
-    let least = doubled.iter().copied().filter(|t| t.error.is_some()).min_by(|a, b| {
-        let of = |t: &Tried| t.error.unwrap_or(f64::INFINITY);
-        of(a).total_cmp(&of(b))
-    });
-    // Where the error is large it may grow for other reasons than rounding.
-    if growing && least.and_then(|t| t.error).is_some_and(|e| e < 0.1) {
-        return Some(Search::Never { least });
+    let of = |tried: &Tried| tried.error.unwrap_or(f64::INFINITY);
+    let least = doubled.iter().copied().enumerate().min_by(|a, b| of(&a.1).total_cmp(&of(&b.1)));
+    if let Some((_, least)) = least.filter(|(i, least)| i + STALLED < doubled.len() && of(least) < CONVERGING) {
+        return Some(Search::Never { least: Some(least) });
     }
     let about = extrapolated(doubled, level, candidate)?;
     (about > 16.0 * MOST_STEPS as f64).then_some(Search::TooMany { about: Some(about) })

@@ -77,7 +77,10 @@ fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut Strin
     };
     let unit = asked.need.truth.unit();
     line("method", format!("{} in {}", best.candidate.label(), best.precision.id()));
-    line("step", format!("{:.6} s, {} steps; {}", best.h_s, best.tried.steps, in_a_period(asked.need.scene, best.h_s)));
+    line(
+        "step",
+        format!("{:.6} s, {}; {}", best.h_s, counted(best.tried.steps), in_a_period(asked.need.scene, best.h_s)),
+    );
     if let Some(frames) = asked.frames {
         let substeps = best.tried.steps / frames;
         let plural = if substeps == 1 { "" } else { "s" };
@@ -92,6 +95,10 @@ fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut Strin
     if let Some(other) = other {
         line("runner-up", runner_up(asked, best, other, unit));
     }
+}
+
+fn counted(steps: u64) -> String {
+    if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") }
 }
 
 fn in_a_period(scene: &dyn AnyScene, h_s: f64) -> String {
@@ -134,7 +141,7 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
         Some(level) if e.is_some_and(|e| e <= level) => " - met",
         Some(_) => " - missed",
     };
-    let mut lines = vec![format!("{} steps: {}{}", again.steps, error(again.error), verdict(again.error))];
+    let mut lines = vec![format!("{}: {}{}", counted(again.steps), error(again.error), verdict(again.error))];
     if pick.tried.steps == 1 {
         lines.push("one step is the whole run".to_owned());
     } else if asked.frames == Some(pick.tried.steps) {
@@ -146,8 +153,8 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
             ""
         };
         lines.push(format!(
-            "twice the step, {} steps: {}{}{luck}",
-            twice.steps,
+            "twice the step, {}: {}{}{luck}",
+            counted(twice.steps),
             error(twice.error),
             verdict(twice.error)
         ));
@@ -177,7 +184,7 @@ fn table(asked: &Asked<'_>, entries: &[Entry]) -> Table {
         Some(_) => ["method", "arithmetic", frame, step, "error", "us a frame", "of the stability limit"],
         None => ["method", "arithmetic", "steps", step, "error", "us a second", "of the stability limit"],
     };
-    let mut table = Table::new(&headers, &headers[2..]);
+    let mut table = Table::new(&headers, &headers[2..6]);
     let mut seen = Vec::new();
     for entry in entries {
         if seen.contains(&entry.candidate) {
@@ -192,7 +199,8 @@ fn table(asked: &Asked<'_>, entries: &[Entry]) -> Table {
 fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     let name = [entry.candidate.label(), entry.precision.id().to_owned()];
     let Ok(pick) = &entry.found else {
-        return name.into_iter().chain([refusal(entry)]).collect();
+        let blanks = ["–"; 4].map(str::to_owned);
+        return name.into_iter().chain(blanks).chain([refusal(asked, entry)]).collect();
     };
     let limit: Limit = limit(asked.need.scene, pick.candidate, pick.precision);
     let (steps, us) = match asked.frames.zip(asked.question.rate_hz) {
@@ -210,9 +218,10 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     name.into_iter().chain(cells).collect()
 }
 
-fn refusal(entry: &Entry) -> String {
+fn refusal(asked: &Asked<'_>, entry: &Entry) -> String {
     match &entry.found {
-        Err(Search::TooMany { about: Some(steps) }) => format!("cannot be had: {} steps", short(Some(*steps))),
+        Err(Search::TooMany { about: Some(steps) }) => format!("cannot be had: about {steps:.1e} steps"),
+        Err(Search::TooMany { about: None }) if asked.question.error.is_none() => "not within the budget".to_owned(),
         Err(Search::TooMany { about: None }) => "cannot be had".to_owned(),
         Err(Search::Never { least }) => match least.and_then(|t| t.error.map(|e| (e, t.steps))) {
             Some((error, steps)) => {
