@@ -33,3 +33,4 @@ pub mod stability;
 pub mod study;
 pub mod summary;
 pub mod sweep;
+pub mod tradeoff;

@@ -114,7 +114,9 @@ pub(crate) fn by_scene(study: &str, blocks: Vec<Block>) -> Vec<Block> {
                 None => common.push(Block::Figure { figure, svg }),
             },
             Block::Links { caption, files } => {
-                let scene = |(_, file): &(String, String)| scene_of_figure(file.trim_end_matches(".svg").trim_end_matches(".png"));
+                let scene = |(_, file): &(String, String)| {
+                    scene_of_figure(file.trim_end_matches(".svg").trim_end_matches(".png"))
+                };
                 let rest =
                     split(files, scene, |scene, files| give(scene, Block::Links { caption: caption.clone(), files }));
                 common.extend((!rest.is_empty()).then_some(Block::Links { caption, files: rest }));

@@ -15,6 +15,7 @@ use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
+use crate::tradeoff::Tradeoff;
 
 /// What a study has made: files to be written, and its part of the page.
 pub struct Product {
@@ -101,6 +102,7 @@ impl Source {
             self.product::<Rotation>()?,
             self.product::<Adequacy>()?,
             self.product::<Stability>()?,
+            self.product::<Tradeoff>()?,
         ])
     }
 }

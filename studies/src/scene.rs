@@ -2,7 +2,7 @@
 
 use faer::fx128;
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::{Kinematics, RigidBody, RigidModel, WorldOmega};
+use integrator::rigid_body::{AttitudeUpdate, Kinematics, RigidBody, RigidModel, WorldOmega};
 use integrator::{Model, Real, Single, State};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,7 @@ use crate::residual::{Residual, residual};
 use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
 use crate::scenes::parameters::Parameters;
 use crate::stability::displaced::run_displaced;
+use crate::tradeoff::timed::{self, Lap, Laps};
 
 /// What a reader should know of a scene before looking at its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,6 +244,16 @@ pub trait AnyScene: Send + Sync {
         None
     }
 
+    /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
+    /// [`timed`](crate::tradeoff::timed).
+    fn time(&self, run: &Run, laps: Laps) -> Option<Lap>;
+
+    /// The same with a step that exists for rigid bodies only.
+    fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
+        let _ = (run, laps);
+        None
+    }
+
     /// Runs one trajectory from the start moved by `displacement` (configuration, then velocity) and observes it at the
     /// steps `looks`; `None` on a curved space.
     fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
@@ -285,6 +296,13 @@ impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particle
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))
     }
+    fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
+        match run.precision {
+            Precision::F32 => timed::particles_explicit::<f32, S>(&self.scene, run, laps),
+            Precision::F64 => Some(timed::particles(&self.scene, run, laps)),
+            Precision::DoubleDouble => None,
+        }
+    }
     fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_displaced::<T, S>(&self.scene, run, displacement, looks)))
     }
@@ -312,6 +330,21 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<fx128>> AnySce
     }
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_body::<T, B>(&self.scene, run, stride))
+    }
+    fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
+        match run.precision {
+            _ if run.update != AttitudeUpdate::Exponential => None,
+            Precision::F32 => timed::body_explicit::<f32, B>(&self.scene, run, laps),
+            Precision::F64 => timed::body(&self.scene, run, laps),
+            Precision::DoubleDouble => None,
+        }
+    }
+    fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
+        match run.precision {
+            Precision::F32 => Some(timed::step::<f32, B>(&self.scene, run, laps)),
+            Precision::F64 => Some(timed::step::<f64, B>(&self.scene, run, laps)),
+            Precision::DoubleDouble => None,
+        }
     }
     fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_step::<T, B>(&self.scene, run, stride)))

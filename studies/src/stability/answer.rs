@@ -13,7 +13,7 @@ use super::limits;
 use crate::cli::{Common, Ending};
 use crate::error::Error;
 use crate::observation::Value;
-use crate::run::{Outcome, Precision, Run};
+use crate::run::{Outcome, Precision, Run, Trajectory};
 use crate::scene::AnyScene;
 use crate::study::Selection;
 
@@ -87,7 +87,9 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     let theory = linear.and_then(limits::number);
     let found = match linear {
         Some(limit) => limits::measure(stepping, limit),
-        None => measure_nonlinear(stepping.scene, stepping),
+        None => measure_nonlinear(stepping.scene, |end_s, steps| {
+            Some(stepping.scene.run(&Run::new(stepping.method, stepping.precision, end_s, steps), 1))
+        }),
     };
     match theory {
         Some(limit) => line(format!("  theory (amplification matrix): {}", seconds(limit))),
@@ -168,8 +170,9 @@ const TIME_SCALES: f64 = 64.0;
 /// A run has failed whose coordinates exceed the largest of the exact motion by this factor.
 const LEAVES: f64 = 4.0;
 
-/// The largest step with which a scene stays within a multiple of the range of its exact motion.
-fn measure_nonlinear(scene: &dyn AnyScene, stepping: &Stepping<'_>) -> Found {
+/// The largest step with which a scene stays within a multiple of the range of its exact motion; `run` takes so many steps to
+/// the end and shows every one.
+pub(crate) fn measure_nonlinear(scene: &dyn AnyScene, run: impl Fn(f64, u64) -> Option<Trajectory>) -> Found {
     let scale = scene.scene().info().time_scale_s;
     let end = TIME_SCALES * scale;
     let sizes = |seen: &crate::observation::Observation| -> Vec<f64> {
@@ -191,8 +194,7 @@ fn measure_nonlinear(scene: &dyn AnyScene, stepping: &Stepping<'_>) -> Found {
     }
     let holds = |h: f64| {
         let steps = ((end / h).ceil() as u64).max(4);
-        let run = Run::new(stepping.method, stepping.precision, h * steps as f64, steps);
-        let trajectory = scene.run(&run, 1);
+        let Some(trajectory) = run(h * steps as f64, steps) else { return false };
         trajectory.outcome == Outcome::Finished
             && trajectory
                 .seen

@@ -1,0 +1,120 @@
+//! What the rows show, against theory. No claim is made about a time: times are not the same twice.
+
+use integrator::methods::MethodId;
+use reports::{Claim, Verdict};
+
+use super::candidate::Candidate;
+use super::ucurve::{Minimum, minima};
+use super::{Part, Row};
+use crate::study::{distinct, short};
+
+pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
+    let mut claims = evaluations(rows);
+    claims.extend(rows.iter().filter(|row| row.part == Part::Vanish).map(vanish));
+    claims.extend(minima(rows).iter().filter(|minimum| is_judged(minimum)).flat_map(u_curve));
+    claims
+}
+
+fn claim(id: String, [statement, theory, measured, bound]: [String; 4], holds: bool) -> Claim {
+    let verdict = Verdict::from_comparison(holds);
+    Claim { id: format!("tradeoff.{id}"), study: "tradeoff".to_owned(), statement, theory, measured, bound, verdict }
+}
+
+/// The evaluations of every finished run of an explicit method are those of its formula.
+fn evaluations(rows: &[Row]) -> Vec<Claim> {
+    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run && row.scored().is_some()).collect();
+    let one = |method: String| {
+        let expected = Candidate::from_id(&method)?.evaluations_a_step()?;
+        let of_method: Vec<&&Row> = runs.iter().filter(|row| row.method == method).collect();
+        let wrong = of_method.iter().filter(|row| row.evaluations != expected * row.steps).count();
+        let texts = [
+            format!("{method} evaluates the force {expected} times a step"),
+            format!("{expected} a step"),
+            format!("{wrong} of {} runs differ", of_method.len()),
+            "none differs".to_owned(),
+        ];
+        Some(claim(format!("evaluations.{method}"), texts, wrong == 0))
+    };
+    distinct(runs.iter().map(|row| row.method.clone())).into_iter().filter_map(one).collect()
+}
+
+/// Roundings on the way to the first increment: of h, of g h and of g h^2, each of eps / 2, and the width of the bracket.
+const ROUNDINGS: f64 = 4.0;
+
+fn vanish(row: &Row) -> Claim {
+    let slack = ROUNDINGS * row.precision.epsilon();
+    let [low, high, theory] = [row.at_rest_h_s, row.moving_h_s, row.theory_h_s].map(|x| x.unwrap_or(f64::NAN));
+    let height = row.position_m.unwrap_or(f64::NAN);
+    let texts = [
+        format!(
+            "a body at rest at {height} m begins to fall only with a step above sqrt(ulp / 2g), in {}",
+            row.precision.id()
+        ),
+        format!("{theory:.9} s"),
+        format!("between {low:.9} s and {high:.9} s"),
+        format!("within {ROUNDINGS} eps"),
+    ];
+    let holds = low <= theory * (1.0 + slack) && high >= theory * (1.0 - slack) && high - low <= slack * high;
+    claim(format!("vanish.{}.{height}", row.precision.id()), texts, holds)
+}
+
+/// Scenes for which the models of rounding do not hold: a motion that forgets its errors, errors that jump with every bounce, and
+/// an angle that grows all the time, so that its largest value is not the size of a number that is rounded.
+const UNSUITED: [&str; 7] = [
+    "linear-drag",
+    "quadratic-drag/fall",
+    "quadratic-drag/rise",
+    "damped-oscillator",
+    "damped-oscillator/critical",
+    "damped-oscillator/over-damped",
+    "pendulum/rotation",
+];
+
+/// The yardsticks, and of a rigid body what is stored in the body frame.
+fn is_judged(minimum: &Minimum) -> bool {
+    use MethodId::{Rk4, SemiImplicitEuler, VelocityVerlet};
+    let method = Candidate::from_id(&minimum.method).filter(|_| !minimum.method.ends_with("/world-omega"));
+    let is_yardstick = |m| matches!(m, SemiImplicitEuler | VelocityVerlet | Rk4);
+    !minimum.scene.starts_with("bouncing-ball")
+        && !UNSUITED.contains(&minimum.scene.as_str())
+        && method.and_then(Candidate::method).is_some_and(is_yardstick)
+}
+
+/// The grid of steps is one of powers of two, and near the bottom of the curve two errors may cancel or add.
+const GRID: f64 = 2.0;
+
+fn u_curve(minimum: &Minimum) -> Vec<Claim> {
+    let Minimum { scene, method, precision, .. } = minimum;
+    let (fewest, most) = (minimum.biased_steps / GRID, minimum.random_steps * GRID);
+    let steps = minimum.steps as f64;
+    let (least, largest) = (minimum.random_error / GRID, minimum.biased_error * GRID);
+    let id = |what: &str| format!("u-curve.{scene}.{method}.{}.{what}", precision.id());
+    vec![
+        claim(
+            id("steps"),
+            [
+                format!(
+                    "the best step of {method} on {scene} in {} is where truncation meets rounding",
+                    precision.id()
+                ),
+                format!("{:.0} .. {:.0} steps", minimum.biased_steps, minimum.random_steps),
+                format!("{steps} steps"),
+                format!("{fewest:.0} .. {most:.0}: a factor of 2, the grid of steps"),
+            ],
+            (fewest..=most).contains(&steps),
+        ),
+        claim(
+            id("error"),
+            [
+                format!(
+                    "the least error of {method} on {scene} in {} is that of truncation and rounding",
+                    precision.id()
+                ),
+                format!("{} .. {}", short(Some(minimum.random_error)), short(Some(minimum.biased_error))),
+                short(Some(minimum.error)),
+                format!("{} .. {}", short(Some(least)), short(Some(largest))),
+            ],
+            (least..=largest).contains(&minimum.error),
+        ),
+    ]
+}

@@ -1,0 +1,97 @@
+//! 'Semi-implicit Euler does its job pretty well in most cases, so that RK4 and implicit Euler are not worth it': on which scenes,
+//! at which error?
+
+use integrator::methods::MethodId;
+
+use super::iso::{LEVELS, Offer, of_rule, prices};
+use super::{Charge, Part, Row};
+use crate::study::distinct;
+
+/// The prices of one level on one scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Duel {
+    /// The scene.
+    pub scene: String,
+    /// The level, m or rad.
+    pub level: f64,
+    /// What is charged.
+    pub charge: Charge,
+    /// Semi-implicit Euler.
+    pub semi_implicit: Offer,
+    /// RK4.
+    pub rk4: Offer,
+    /// Implicit Euler.
+    pub implicit: Offer,
+    /// The cheapest of all.
+    pub best: Option<super::iso::Price>,
+}
+
+/// Prices within this factor of each other are level: times have noise, and prices are interpolated.
+pub const LEVEL_WITH: f64 = 1.1;
+
+/// Every level on every scene, charged one way.
+pub fn duels(rows: &[Row], charge: Charge) -> Vec<Duel> {
+    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
+    let mut duels = Vec::new();
+    for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
+        let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();
+        for level in LEVELS {
+            let of = |method: MethodId| of_rule(&of_scene, level, charge, method.id());
+            duels.push(Duel {
+                scene: scene.to_owned(),
+                level,
+                charge,
+                semi_implicit: of(MethodId::SemiImplicitEuler),
+                rk4: of(MethodId::Rk4),
+                implicit: of(MethodId::ImplicitEuler),
+                best: prices(&of_scene, level, charge).into_iter().next(),
+            });
+        }
+    }
+    duels
+}
+
+/// By what factor an offer is dearer than another; only a lower bound where its sweep ends above the level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factor {
+    /// So many times.
+    Of(f64),
+    /// At least so many times.
+    AtLeast(f64),
+    /// No step does it.
+    Never,
+}
+
+/// The price of `a` over that of `b`; `None` where that of `b` is not known.
+pub fn factor(a: &Offer, b: &Offer) -> Option<Factor> {
+    let Offer::At(b) = b else { return None };
+    Some(match a {
+        Offer::At(a) => Factor::Of(a.cost / b.cost),
+        Offer::Above(a) => Factor::AtLeast(a.cost / b.cost),
+        Offer::Never => Factor::Never,
+    })
+}
+
+impl Duel {
+    /// By what factor semi-implicit Euler is beaten by the best; `None` where nothing reaches the level.
+    pub fn beaten_by(&self) -> Option<Factor> {
+        factor(&self.semi_implicit, &Offer::At(self.best.clone()?))
+    }
+
+    /// Whether semi-implicit Euler is the best buy, or level with it.
+    pub fn semi_implicit_is_best(&self) -> bool {
+        matches!(self.beaten_by(), Some(Factor::Of(factor)) if factor <= LEVEL_WITH)
+    }
+}
+
+impl Factor {
+    /// In a table: `4.2`, `> 170`.
+    pub fn show(self) -> String {
+        let digits = |x: f64| if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") };
+        match self {
+            Factor::Of(x) => digits(x),
+            Factor::AtLeast(x) => format!("> {}", digits(x)),
+            Factor::Never => "never".to_owned(),
+        }
+    }
+}
