@@ -21,6 +21,16 @@ pub trait Lanes: Real {
     fn each_lane(self, f: impl Fn(f64) -> (f64, f64)) -> (Self, Self);
 }
 
+/// Numbers that are filled from plain ones, and read, lane by lane.
+pub trait Laned: Real {
+    /// How many plain numbers there are.
+    const LANES: usize;
+    /// The numbers f(0), f(1), ...
+    fn from_lanes(f: impl FnMut(usize) -> f64) -> Self;
+    /// The number in the lane `i` < [`Self::LANES`].
+    fn lane(&self, i: usize) -> f64;
+}
+
 /// The same numbers with every `mul_add` fused.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Fused<T>(pub T);
@@ -246,5 +256,45 @@ impl<T: Real, const N: usize> Real for Pack<T, N> {
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.0.iter().all(|x| x.is_finite())
+    }
+}
+
+impl Laned for f64 {
+    const LANES: usize = 1;
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        f(0)
+    }
+    fn lane(&self, _i: usize) -> f64 {
+        *self
+    }
+}
+
+impl Laned for f64x4 {
+    const LANES: usize = 4;
+    fn from_lanes(f: impl FnMut(usize) -> f64) -> Self {
+        f64x4::from(std::array::from_fn::<f64, 4, _>(f))
+    }
+    fn lane(&self, i: usize) -> f64 {
+        self.to_array()[i]
+    }
+}
+
+impl<T: Laned + Lanes> Laned for Fused<T> {
+    const LANES: usize = T::LANES;
+    fn from_lanes(f: impl FnMut(usize) -> f64) -> Self {
+        Fused(T::from_lanes(f))
+    }
+    fn lane(&self, i: usize) -> f64 {
+        self.0.lane(i)
+    }
+}
+
+impl<T: Laned, const N: usize> Laned for Pack<T, N> {
+    const LANES: usize = N * T::LANES;
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        Pack(std::array::from_fn(|vector| T::from_lanes(|i| f(vector * T::LANES + i))))
+    }
+    fn lane(&self, i: usize) -> f64 {
+        self.0[i / T::LANES].lane(i % T::LANES)
     }
 }

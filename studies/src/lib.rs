@@ -12,6 +12,7 @@ pub mod adequacy;
 pub mod cli;
 pub mod convergence;
 pub mod drift;
+pub mod ensemble;
 pub mod error;
 mod findings;
 pub mod fit;

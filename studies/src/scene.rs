@@ -1,5 +1,7 @@
 //! What a scene is: a model with its exact motion in any arithmetic, and what is known about it beforehand.
 
+use std::any::Any;
+
 use faer::fx128;
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Kinematics, RigidBody, RigidModel, WorldOmega};
@@ -143,7 +145,7 @@ pub enum StabilityLimit {
 }
 
 /// What every scene states about itself, in no particular arithmetic.
-pub trait Scene: Parameters + Send + Sync {
+pub trait Scene: Parameters + Any + Send + Sync {
     /// Horizon, time scale, source.
     fn info(&self) -> Info;
 
