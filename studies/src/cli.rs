@@ -71,15 +71,7 @@ impl Common {
         if self.steps.contains(&0) {
             return Err(plan("--steps", "a run has at least 1 step; give numbers such as 64,128,256"));
         }
-        if let Some(threads) = self.threads {
-            if !(1..=MOST_THREADS).contains(&threads) {
-                let message =
-                    format!("give at least 1 and at most {MOST_THREADS}, or leave the flag out for all cores");
-                return Err(plan("--threads", &message));
-            }
-            // Fails only if a pool exists already, and then its size was chosen by the same flag.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        }
+        use_threads(self.threads)?;
         let mut chosen = if self.scene.is_empty() {
             let mut all = scenes::catalogue();
             if self.quick {
@@ -124,6 +116,21 @@ impl Common {
         }
         chosen.iter().try_for_each(|scene| scene.scene().check())
     }
+}
+
+/// Runs what follows on this many threads; on all cores where none is given.
+///
+/// # Errors
+/// A number that is zero, or more than any machine has.
+pub fn use_threads(threads: Option<usize>) -> Result<(), Error> {
+    let Some(threads) = threads else { return Ok(()) };
+    if !(1..=MOST_THREADS).contains(&threads) {
+        let message = format!("give at least 1 and at most {MOST_THREADS}, or leave the flag out for all cores");
+        return Err(plan("--threads", &message));
+    }
+    // Fails only if a pool exists already, and then its size was chosen by the same flag.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    Ok(())
 }
 
 fn plan(place: &str, message: &str) -> Error {

@@ -9,9 +9,12 @@
 #[macro_use]
 pub mod run;
 pub mod adequacy;
+pub mod bounds;
+
 pub mod cli;
 pub mod convergence;
 pub mod drift;
+pub mod erased;
 pub mod error;
 pub mod fit;
 pub mod growth;
