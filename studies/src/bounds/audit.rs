@@ -128,7 +128,12 @@ impl Audit {
         let mut text = all.to_text();
         for found in self.flagged() {
             let what = if found.tight { "too tight: a bound is within the rounding noise" } else { "vacuous" };
-            text += &format!("\n{what}: {} (margin {:.3}): {}", found.judged.row.name(), found.margin, found.judged.row.reason);
+            text += &format!(
+                "\n{what}: {} (margin {:.3}): {}",
+                found.judged.row.name(),
+                found.margin,
+                found.judged.row.reason
+            );
         }
         text += "\n\nnot covered by any row:\n";
         for (scene, quantity, methods) in &self.uncovered {

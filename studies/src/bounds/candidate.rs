@@ -1,8 +1,8 @@
 //! What is held to bounds: a built-in method, or one from outside.
 
+use integrator::Method;
 use integrator::counted::Counted;
 use integrator::rigid_body::{BodyOmega, RigidBody, RigidModel, WorldOmega};
-use integrator::Method;
 
 use super::stepper::{Ask, Stepper};
 use crate::erased::{

@@ -50,7 +50,11 @@ impl Judged {
         } else {
             return "inside".to_owned();
         };
-        if bound == 0.0 { format!("{beyond:.3e} {side} 0") } else { format!("{:.3} % {side}", 100.0 * beyond / bound.abs()) }
+        if bound == 0.0 {
+            format!("{beyond:.3e} {side} 0")
+        } else {
+            format!("{:.3} % {side}", 100.0 * beyond / bound.abs())
+        }
     }
 
     /// What changed since the bound was set, in words.
@@ -58,7 +62,9 @@ impl Judged {
         match self.measured.value() {
             None => "was a number".to_owned(),
             Some(x) if x == self.row.measured => "none".to_owned(),
-            Some(x) if self.row.measured == 0.0 || self.row.kind.is_exponent() => format!("{:+.3e}", x - self.row.measured),
+            Some(x) if self.row.measured == 0.0 || self.row.kind.is_exponent() => {
+                format!("{:+.3e}", x - self.row.measured)
+            }
             Some(x) => format!("x {:.6}", x / self.row.measured),
         }
     }
@@ -75,17 +81,21 @@ pub fn judge<'a>(
     progress: &Progress,
     candidate: impl Fn(Stepper) -> Box<dyn Candidate + 'a> + Sync,
 ) -> Result<Vec<Judged>, Error> {
-    let groups: Vec<&[&Row]> = rows
-        .chunk_by(|a, b| (&a.scene, &a.method, a.precision) == (&b.scene, &b.method, b.precision))
-        .collect();
+    let groups: Vec<&[&Row]> =
+        rows.chunk_by(|a, b| (&a.scene, &a.method, a.precision) == (&b.scene, &b.method, b.precision)).collect();
     for group in &groups {
         known.method(group[0])?;
     }
-    let judged = in_parallel(&groups, |group| cost(group), progress, |group| -> Result<Vec<Judged>, Error> {
-        let candidate = candidate(known.method(group[0])?);
-        let runs = Runs::new(candidate.as_ref(), known.scene(group[0])?, group[0].precision);
-        Ok(group.iter().map(|&row| Judged { row: row.clone(), measured: runs.measure(row) }).collect())
-    });
+    let judged = in_parallel(
+        &groups,
+        |group| cost(group),
+        progress,
+        |group| -> Result<Vec<Judged>, Error> {
+            let candidate = candidate(known.method(group[0])?);
+            let runs = Runs::new(candidate.as_ref(), known.scene(group[0])?, group[0].precision);
+            Ok(group.iter().map(|&row| Judged { row: row.clone(), measured: runs.measure(row) }).collect())
+        },
+    );
     Ok(judged.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
 }
 
@@ -121,7 +131,8 @@ pub fn broken(judged: &[Judged]) -> Table {
     for one in broken {
         let row = &one.row;
         let bound = format!("{:.6e} … {:.6e}", row.low, row.high);
-        let cells = [row.name(), one.measured.text(), bound, row.unit.clone(), one.excess(), one.change(), row.reason.clone()];
+        let cells =
+            [row.name(), one.measured.text(), bound, row.unit.clone(), one.excess(), one.change(), row.reason.clone()];
         table.push(cells);
     }
     table

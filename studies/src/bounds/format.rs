@@ -93,7 +93,8 @@ pub fn junit(judged: &[Judged]) -> String {
         let (broken, skipped) = (count(of, Verdict::Broken), count(of, Verdict::NotTested));
         format!("tests=\"{}\" failures=\"{broken}\" errors=\"0\" skipped=\"{skipped}\"", of.len())
     };
-    let mut xml = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"bounds\" {}>\n", attributes(judged));
+    let mut xml =
+        format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"bounds\" {}>\n", attributes(judged));
     for suite in judged.chunk_by(|a, b| a.row.scene == b.row.scene) {
         let scene = escape(&suite[0].row.scene);
         xml += &format!("  <testsuite name=\"{scene}\" {}>\n", attributes(suite));
@@ -113,7 +114,14 @@ pub fn junit(judged: &[Judged]) -> String {
 
 fn failure(one: &Judged) -> String {
     let row = &one.row;
-    let message = format!("measured {} {}, bound {:e} to {:e}: {}", one.measured.text(), row.unit, row.low, row.high, one.excess());
+    let message = format!(
+        "measured {} {}, bound {:e} to {:e}: {}",
+        one.measured.text(),
+        row.unit,
+        row.low,
+        row.high,
+        one.excess()
+    );
     let detail = format!("change since the bound was set: {}\nreason: {}", one.change(), row.reason);
     format!("<failure message=\"{}\">{}</failure>", escape(&message), escape(&detail))
 }

@@ -10,8 +10,11 @@ use super::stepper::Stepper;
 use crate::drift::{Drift, drifts};
 use crate::error::Error;
 use crate::observation::Quantity;
+use crate::run::Precision;
 use crate::scene::{AnyScene, ExpectedOrder};
 use crate::scenes;
+use crate::stability::amplification;
+use crate::stability::displaced::Stepping;
 
 /// The catalogue, by name.
 pub struct Known {
@@ -79,10 +82,7 @@ impl Known {
         let has = match row.quantity {
             Subject::Error(quantity) => scene.quantities.contains(&quantity),
             Subject::Balance(drift) => scene.balances.contains(&drift),
-            Subject::Step => {
-                let method = self.method(row).ok().and_then(Stepper::of_theory);
-                method.is_some_and(|method| scene.scene.scene().stability_limit(method).is_some())
-            }
+            Subject::Step => self.method(row).is_ok_and(|stepper| has_limit(scene.scene.as_ref(), stepper)),
             Subject::Evaluations => true,
         };
         if !has {
@@ -117,15 +117,16 @@ impl Known {
         if row.mutant.is_empty() { Ok(None) } else { Mutant::from_id(&row.mutant).map(Some) }
     }
 
-    /// Every scene with every method and all that can be measured of the two.
+    /// Every scene with every method and all that can be measured of the two. The quaternion's norm is not of a scene: the driver
+    /// restores it, whatever moves.
     pub fn combinations(&self) -> Vec<(&'static str, String, Subject)> {
         let mut all = Vec::new();
         for (&id, scene) in &self.scenes {
             for method in Stepper::all(scene.scene.as_ref()) {
-                let limit = method.of_theory().and_then(|m| scene.scene.scene().stability_limit(m));
                 let errors = scene.quantities.iter().map(|&quantity| Subject::Error(quantity));
-                let balances = scene.balances.iter().map(|&drift| Subject::Balance(drift));
-                let step = limit.map(|_| Subject::Step);
+                let balances = scene.balances.iter().filter(|d| **d != Drift::QuaternionNorm);
+                let step = has_limit(scene.scene.as_ref(), method).then_some(Subject::Step);
+                let balances = balances.map(|&drift| Subject::Balance(drift));
                 let subjects = errors.chain(balances).chain(step).chain([Subject::Evaluations]);
                 all.extend(subjects.map(|subject| (id, method.id(), subject)));
             }
@@ -144,6 +145,13 @@ impl Known {
         first.dedup_by_key(|id| id.split('/').next());
         first
     }
+}
+
+/// Whether a largest stable step can be measured: on a flat scene whose equation is linear.
+fn has_limit(scene: &dyn AnyScene, stepper: Stepper) -> bool {
+    let Stepper::Flat(method) = stepper else { return false };
+    // Rounding is no part of the question.
+    amplification::limit(&Stepping { scene, method, precision: Precision::F64 }).is_some()
 }
 
 impl Scene {

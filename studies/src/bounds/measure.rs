@@ -166,9 +166,7 @@ impl<'a> Runs<'a> {
         let Some(ExpectedOrder::Of(p)) = theory else {
             return Err(Measured::Undefined("theory names no order for a constant".to_owned()));
         };
-        let constant = |steps: u64| {
-            Ok(self.error(quantity, steps, row.end_s)? / (row.end_s / steps as f64).powf(p))
-        };
+        let constant = |steps: u64| Ok(self.error(quantity, steps, row.end_s)? / (row.end_s / steps as f64).powf(p));
         Ok(2.0 * constant(row.steps)? - constant(row.steps / 2)?)
     }
 
@@ -243,7 +241,8 @@ impl<'a> Runs<'a> {
 /// The rate of E / E0 = exp(r t), fitted to the largest value of each stretch, which does not swing within a period.
 fn rate(errors: &[(f64, f64)]) -> Result<f64, Measured> {
     let stretch = errors.len().div_ceil(STRETCHES).max(1);
-    let largest = |part: &[(f64, f64)]| (part[part.len() - 1].0, part.iter().map(|e| e.1).fold(f64::NEG_INFINITY, f64::max));
+    let largest =
+        |part: &[(f64, f64)]| (part[part.len() - 1].0, part.iter().map(|e| e.1).fold(f64::NEG_INFINITY, f64::max));
     let samples: Vec<(f64, f64)> = errors.chunks(stretch).map(largest).collect();
     let line = growth::fit_exponential_rate(&samples);
     line.map(|line| line.slope).ok_or_else(|| Measured::Undefined("E / E0 is not positive and finite".to_owned()))

@@ -9,7 +9,18 @@ use crate::run::Precision;
 
 /// The columns, in their order.
 pub const COLUMNS: [&str; 13] = [
-    "scene", "method", "precision", "quantity", "kind", "steps", "end_s", "unit", "low", "high", "measured", "reason",
+    "scene",
+    "method",
+    "precision",
+    "quantity",
+    "kind",
+    "steps",
+    "end_s",
+    "unit",
+    "low",
+    "high",
+    "measured",
+    "reason",
     "mutant",
 ];
 
@@ -37,12 +48,9 @@ pub const MOST_STEPS: u64 = 1 << 24;
 /// # Errors
 /// [`reports::Error::Csv`] with file, line and column: whatever is not a sorted file of bounds that name a run.
 pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
-    let at = |line: u64, column: usize, message: String| Error::from(reports::Error::Csv {
-        place: place.to_owned(),
-        line,
-        column: column as u64,
-        message,
-    });
+    let at = |line: u64, column: usize, message: String| {
+        Error::from(reports::Error::Csv { place: place.to_owned(), line, column: column as u64, message })
+    };
     let text = utf8(bytes, place)?;
     let mut reader = ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
     let headers = reader.headers().map_err(|e| at(0, 0, e.to_string()))?.clone();
@@ -131,9 +139,10 @@ fn end(rows: usize) -> String {
 fn check_end(text: &str, rows: usize) -> Result<(), String> {
     match text.lines().last() {
         Some(last) if last == end(rows) => Ok(()),
-        Some(last) if last.starts_with("# end: ") => {
-            Err(format!("'{last}', but the file holds {rows}: lines are lost, or the last line should be '{}'", end(rows)))
-        }
+        Some(last) if last.starts_with("# end: ") => Err(format!(
+            "'{last}', but the file holds {rows}: lines are lost, or the last line should be '{}'",
+            end(rows)
+        )),
         _ => Err(format!("truncated: the last line should be '# end: N rows', and {rows} rows were read")),
     }
 }
@@ -150,7 +159,9 @@ fn check_headers(headers: &StringRecord) -> Result<(), Wrong> {
         return Err((column + 1, message));
     }
     match COLUMNS.iter().enumerate().find(|(i, name)| headers.get(*i) != Some(name)) {
-        Some((i, name)) => Err((i + 1, format!("column '{name}' is missing here; the columns are {}", COLUMNS.join(",")))),
+        Some((i, name)) => {
+            Err((i + 1, format!("column '{name}' is missing here; the columns are {}", COLUMNS.join(","))))
+        }
         None if headers.len() > COLUMNS.len() => Err((COLUMNS.len() + 1, "a column too many".to_owned())),
         None => Ok(()),
     }
@@ -179,7 +190,9 @@ fn parse(record: &StringRecord, known: &Known) -> Result<Row, Wrong> {
         precision: Precision::from_id(field("precision")).map_err(of_name("precision"))?,
         quantity: Subject::from_id(field("quantity")).map_err(of_name("quantity"))?,
         kind: Kind::from_id(field("kind")).map_err(of_name("kind"))?,
-        steps: field("steps").parse().map_err(|_| wrong("steps")(format!("'{}' is not a number of steps", field("steps"))))?,
+        steps: field("steps")
+            .parse()
+            .map_err(|_| wrong("steps")(format!("'{}' is not a number of steps", field("steps"))))?,
         end_s: number("end_s")?,
         unit: field("unit").to_owned(),
         low: number("low")?,
@@ -195,7 +208,12 @@ fn parse(record: &StringRecord, known: &Known) -> Result<Row, Wrong> {
     check_run(&row).map_err(|(name, message)| (column(name), format!("'{name}': {message}")))?;
     let unit = known.unit(&row);
     if row.unit != unit {
-        return Err(wrong("unit")(format!("'{}' where {} of {} is in '{unit}'", row.unit, row.kind.id(), row.quantity.id())));
+        return Err(wrong("unit")(format!(
+            "'{}' where {} of {} is in '{unit}'",
+            row.unit,
+            row.kind.id(),
+            row.quantity.id()
+        )));
     }
     Ok(row)
 }
@@ -214,7 +232,10 @@ fn check_run(row: &Row) -> Result<(), (&'static str, String)> {
         return Err(("low", format!("{:?} is above high {:?}", row.low, row.high)));
     }
     if !row.admits(row.measured) {
-        return Err(("measured", format!("{:?} is outside {:?} to {:?}: it never held", row.measured, row.low, row.high)));
+        return Err((
+            "measured",
+            format!("{:?} is outside {:?} to {:?}: it never held", row.measured, row.low, row.high),
+        ));
     }
     if !(row.is_theory() || row.reason.starts_with("measured x ")) {
         return Err(("reason", "give 'theory: the formula' or 'measured x FACTOR: what is known'".to_owned()));

@@ -29,17 +29,10 @@ pub fn update(bounds: &Bounds, reason: Option<&str>, progress: &Progress) -> Res
         place: "--update".to_owned(),
         message: "refused without a reason: say why the bounds move with --reason \"...\"".to_owned(),
     })?;
-    let all: Vec<&Row> = bounds.rows.iter().collect();
-    let mut rows = Vec::new();
-    let mut moved = Vec::new();
-    for judged in bounds.check(&all, progress)? {
-        if judged.is_broken() {
-            let new = anew(&judged, reason)?;
-            moved.push((judged.row, new.clone()));
-            rows.push(new);
-        } else {
-            rows.push(judged.row);
-        }
+    let moved = moved(bounds, reason, progress)?;
+    let mut rows = bounds.rows.clone();
+    for (old, new) in &moved {
+        rows.iter_mut().filter(|row| *row == old).for_each(|row| new.clone_into(row));
     }
     let open = uncovered(&bounds.known, &bounds.rows);
     let cost = |(scene, stepper): &(&dyn crate::scene::AnyScene, super::stepper::Stepper)| {
@@ -49,6 +42,16 @@ pub fn update(bounds: &Bounds, reason: Option<&str>, progress: &Progress) -> Res
     rows.extend(added.iter().cloned());
     rows.sort_by_cached_key(Row::key);
     Ok(Update { rows, moved, added })
+}
+
+/// The broken rows as they are, and as they should be.
+///
+/// # Errors
+/// A broken row without a number, which no bound can admit.
+pub fn moved(bounds: &Bounds, reason: &str, progress: &Progress) -> Result<Vec<(Row, Row)>, Error> {
+    let all: Vec<&Row> = bounds.rows.iter().collect();
+    let broken = bounds.check(&all, progress)?.into_iter().filter(Judged::is_broken);
+    broken.map(|judged| Ok((judged.row.clone(), anew(&judged, reason)?))).collect()
 }
 
 /// The row with its bounds around the new number.
@@ -62,7 +65,13 @@ fn anew(judged: &Judged, reason: &str) -> Result<Row, Error> {
         from_zero(row.clone(), x, row.high / ROUNDING, reason)
     } else if row.kind.is_exponent() || x <= 0.0 {
         let half = 0.5 * (row.high - row.low);
-        Row { low: x - half, high: x + half, measured: x, reason: format!("measured x 1, +-{half}: {reason}"), ..row.clone() }
+        Row {
+            low: x - half,
+            high: x + half,
+            measured: x,
+            reason: format!("measured x 1, +-{half}: {reason}"),
+            ..row.clone()
+        }
     } else if row.low == row.high {
         Row { low: x, high: x, measured: x, reason: format!("measured x 1: {reason}"), ..row.clone() }
     } else {

@@ -6,10 +6,10 @@ mod wrong;
 
 pub use show::{Death, deaths, summary};
 
+use integrator::Method;
 use integrator::methods::{MethodId, RigidStep};
 use integrator::pose::Fixed;
 use integrator::rigid_body::{AttitudeUpdate, BodyOmega, RigidBody, RigidModel, Storage, WorldOmega};
-use integrator::Method;
 
 use super::candidate::{Candidate, clock, counted, on_flat, turning};
 use super::stepper::{Ask, Stepper};
@@ -21,7 +21,9 @@ use crate::run::{Clock, Precision, Run, Seen, Trajectory, run_any, step_any};
 use crate::scene::AnyScene;
 use crate::scenes;
 use crate::stability::bisect::Found;
-use wrong::{AccumulatedTime, Altered, Loads, Negated, NotNormalised, StoredInSingle, WrongRk4, WrongSide, built_in};
+use wrong::{
+    AccumulatedTime, Altered, Loads, Negated, NotNormalised, StaleForce, StoredInSingle, WrongRk4, WrongSide, built_in,
+};
 
 macro_rules! mutants {
     ($($name:ident, $id:literal, $about:literal;)*) => {
@@ -58,9 +60,10 @@ mutants! {
     OldVelocity, "old-velocity", "semi-implicit Euler moves with the old velocity";
     NewVelocity, "new-velocity", "explicit Euler moves with the new velocity";
     EquationsNotSolved, "equations-not-solved", "an implicit method takes its first guess, explicit Euler's step";
+    AccumulatedTime, "accumulated-time", "time is summed, t += h, where it should be i h";
+    StaleForce, "stale-force", "velocity Verlet kicks twice with the first force";
     StageTime, "rk4-stage-time", "every stage of RK4 is evaluated at the time of the first";
     Curvature, "rk4-without-curvature", "RK4 on a rotation without the brackets of Munthe-Kaas";
-    AccumulatedTime, "accumulated-time", "time is summed, t += h, where it should be i h";
     SingleAccumulation, "f32-accumulation", "the state is stored in f32 between the steps";
     GyroscopicMissing, "gyroscopic-term-missing", "the gyroscopic term omega x I omega is left out";
     GyroscopicSign, "gyroscopic-term-sign", "the gyroscopic term has the wrong sign";
@@ -108,12 +111,9 @@ impl Mutant {
                 in_double && storage.is_some_and(|(stored, _)| stored == Storage::WithoutGyroscopicTerm)
             }
             Mutant::WrongFrame => in_double && storage.is_some(),
-            Mutant::StageTime => {
-                in_double && is(MethodId::Rk4) && (storage.is_none() || storage == exponential(world))
-            }
-            Mutant::AccumulatedTime | Mutant::SingleAccumulation => {
-                in_double && is(MethodId::Rk4) && storage.is_none()
-            }
+            Mutant::StageTime => in_double && is(MethodId::Rk4) && (storage.is_none() || storage == exponential(world)),
+            Mutant::StaleForce => in_double && is(MethodId::VelocityVerlet) && storage.is_none(),
+            Mutant::AccumulatedTime | Mutant::SingleAccumulation => in_double && is(MethodId::Rk4) && storage.is_none(),
             Mutant::Curvature => {
                 in_double && is(MethodId::Rk4) && [exponential(world), exponential(body)].contains(&storage)
             }
@@ -192,6 +192,7 @@ impl Wrong {
         Some(match self.mutant {
             Mutant::ForceSign => built_in(self.stepper.method()?, &Negated(motion), clock),
             Mutant::StageTime => on_flat(&WrongRk4 { stage_times: false, curvature: true }, motion, clock),
+            Mutant::StaleForce => on_flat(&StaleForce, motion, clock),
             Mutant::AccumulatedTime => on_flat(&AccumulatedTime::default(), motion, clock),
             Mutant::SingleAccumulation => on_flat(&StoredInSingle, motion, clock),
             _ => return None,
@@ -208,7 +209,9 @@ impl Wrong {
             Mutant::GyroscopicMissing => Loads::Gyroscopic(1.0),
             Mutant::GyroscopicSign => Loads::Gyroscopic(2.0),
             Mutant::GyroscopicAdded => Loads::Gyroscopic(-1.0),
-            Mutant::WrongSide => return Some(turning(&WrongSide, &BodyOmega::<_>::new(counted(motion)), motion, clock)),
+            Mutant::WrongSide => {
+                return Some(turning(&WrongSide, &BodyOmega::<_>::new(counted(motion)), motion, clock));
+            }
             Mutant::StageTime | Mutant::Curvature => {
                 let curvature = self.mutant != Mutant::Curvature;
                 let wrong = WrongRk4 { stage_times: self.mutant != Mutant::StageTime, curvature };

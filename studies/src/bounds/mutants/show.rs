@@ -4,6 +4,7 @@ use reports::Table;
 
 use super::Mutant;
 use crate::bounds::check::{Judged, judge};
+use crate::bounds::row::{Kind, Subject};
 use crate::bounds::{Bounds, Row};
 use crate::error::Error;
 use crate::sweep::Progress;
@@ -25,9 +26,11 @@ impl Death {
         self.killers.is_empty() || !self.spared.is_empty()
     }
 
-    /// The row that shows it best: one whose bounds are theory's.
+    /// The row that shows it best: one whose bounds are theory's, or else one of a balance.
     pub fn killer(&self) -> Option<&Judged> {
-        self.killers.iter().find(|one| one.row.is_theory()).or(self.killers.first())
+        let of_balance = |one: &&Judged| matches!(one.row.quantity, Subject::Balance(_));
+        let by_theory = self.killers.iter().find(|one| one.row.is_theory() && one.row.kind != Kind::EvaluationsPerStep);
+        by_theory.or_else(|| self.killers.iter().find(of_balance)).or(self.killers.first())
     }
 }
 

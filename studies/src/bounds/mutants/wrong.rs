@@ -141,6 +141,17 @@ impl<M: Model<f64, Config: Vector<f64>>> Method<f64, M> for StoredInSingle {
     }
 }
 
+/// Velocity Verlet whose second kick takes the force of the first: v1 = v0 + h a0.
+pub(super) struct StaleForce;
+
+impl<M: Model<f64>> Method<f64, M> for StaleForce {
+    fn step(&self, m: &M, t: f64, h: f64, s: State<M::Config>) -> State<M::Config> {
+        let a0 = m.rate(t, &s);
+        let u = s.v.plus(a0, 0.5 * h);
+        State { q: s.q.retract(m.velocity(s.q, u), h), v: u.plus(a0, 0.5 * h) }
+    }
+}
+
 /// Semi-implicit Euler in body components whose increment multiplies from the left, as one in world components does.
 pub(super) struct WrongSide;
 
