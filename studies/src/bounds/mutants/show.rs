@@ -4,7 +4,7 @@ use reports::Table;
 
 use super::Mutant;
 use crate::bounds::check::{Judged, judge};
-use crate::bounds::row::{Kind, Subject};
+use crate::bounds::row::Subject;
 use crate::bounds::{Bounds, Row};
 use crate::error::Error;
 use crate::sweep::Progress;
@@ -26,11 +26,15 @@ impl Death {
         self.killers.is_empty() || !self.spared.is_empty()
     }
 
-    /// The row that shows it best: one whose bounds are theory's, or else one of a balance.
+    /// The row that shows it best: one whose bounds are theory's, or else one of a balance with a law for every step.
     pub fn killer(&self) -> Option<&Judged> {
-        let of_balance = |one: &&Judged| matches!(one.row.quantity, Subject::Balance(_));
-        let by_theory = self.killers.iter().find(|one| one.row.is_theory() && one.row.kind != Kind::EvaluationsPerStep);
-        by_theory.or_else(|| self.killers.iter().find(of_balance)).or(self.killers.first())
+        let rank = |row: &Row| match (row.is_theory(), row.quantity) {
+            (true, Subject::Evaluations) => 1,
+            (true, _) => 0,
+            (false, Subject::Balance(_)) if row.reason.contains("every step adds") => 2,
+            _ => 3,
+        };
+        self.killers.iter().min_by_key(|one| rank(&one.row))
     }
 }
 
