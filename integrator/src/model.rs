@@ -65,7 +65,7 @@ pub trait Method<T: Real, M: Model<T>> {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config>;
 }
 
-impl<T: Real, M: Model<T>> Model<T> for &M {
+impl<T: Real, M: Model<T> + ?Sized> Model<T> for &M {
     type Config = M::Config;
 
     #[inline(always)]

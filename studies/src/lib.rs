@@ -9,10 +9,13 @@
 #[macro_use]
 pub mod run;
 pub mod adequacy;
+pub mod bounds;
+
 pub mod cli;
 pub mod convergence;
 pub mod drift;
 pub mod ensemble;
+pub mod erased;
 pub mod error;
 mod findings;
 pub mod fit;

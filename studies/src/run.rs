@@ -197,9 +197,10 @@ pub(crate) fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride
 }
 
 /// A body of which only the kind of its position is known.
-type AnyBody<'a, T, P> = &'a dyn RigidBody<T, Position = P>;
+pub(crate) type AnyBody<'a, T, P> = &'a dyn RigidBody<T, Position = P>;
 
-fn run_any<T: Single, P: Vector<T>>(
+/// Runs a body of which only the kind of its position is known.
+pub(crate) fn run_any<T: Single, P: Vector<T>>(
     body: AnyBody<'_, T, P>,
     start: Kinematics<T, P>,
     run: &Run,
@@ -232,7 +233,8 @@ pub(crate) fn run_step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidSt
     step_any(body as AnyBody<'_, T, B::Position>, body.exact(T::lit(0.0)), run, stride)
 }
 
-fn step_any<T: Single, P: Vector<T>>(
+/// The same with a step that exists for rigid bodies only.
+pub(crate) fn step_any<T: Single, P: Vector<T>>(
     body: AnyBody<'_, T, P>,
     start: Kinematics<T, P>,
     run: &Run<RigidStep>,
@@ -275,16 +277,16 @@ impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<T, B::Position> {
 
 /// When to step, and when to look.
 #[derive(Clone, Copy)]
-struct Clock {
-    end_s: f64,
-    steps: u64,
-    stride: u64,
+pub(crate) struct Clock {
+    pub(crate) end_s: f64,
+    pub(crate) steps: u64,
+    pub(crate) stride: u64,
 }
 
 /// What was seen until the end, or until the step that failed.
-struct Seen {
-    seen: Vec<(u64, Observation)>,
-    failed_step: Option<u64>,
+pub(crate) struct Seen {
+    pub(crate) seen: Vec<(u64, Observation)>,
+    pub(crate) failed_step: Option<u64>,
 }
 
 impl Clock {
@@ -292,7 +294,8 @@ impl Clock {
         Clock { end_s: run.end_s, steps: run.steps, stride }
     }
 
-    fn drive<T: Single, M: Model<T>, A: Method<T, M>>(
+    /// Drives a method on a model and looks when it is time to.
+    pub(crate) fn drive<T: Single, M: Model<T>, A: Method<T, M>>(
         self,
         method: &A,
         model: &M,
@@ -311,7 +314,8 @@ impl Clock {
 }
 
 impl Seen {
-    fn trajectory(self, implicit: bool, evaluations: u64) -> Trajectory {
+    /// With its outcome and the evaluations it took.
+    pub(crate) fn trajectory(self, implicit: bool, evaluations: u64) -> Trajectory {
         let outcome = match self.failed_step {
             None => Outcome::Finished,
             Some(_) if implicit => Outcome::NotConverged,

@@ -9,6 +9,7 @@ use integrator::{Model, Real, Single, State};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
+use crate::erased::{AnyMotion, FlatSpace, Place};
 use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
@@ -262,6 +263,9 @@ pub trait AnyScene: Send + Sync {
         let _ = (run, displacement, looks);
         None
     }
+
+    /// The model and its exact motion in f64, of which only the space is known: for methods and models from outside.
+    fn any_motion(&self) -> AnyMotion<'_>;
 }
 
 /// Particles, or coordinates of a flat space: the scene is the model.
@@ -276,7 +280,7 @@ pub(crate) struct Rigid<B> {
     pub(crate) scene: B,
 }
 
-impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particles<S> {
+impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> AnyScene for Particles<S> {
     fn id(&self) -> &'static str {
         self.id
     }
@@ -308,9 +312,12 @@ impl<S: Scene + Motion<f32> + Motion<f64> + Motion<fx128>> AnyScene for Particle
     fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_displaced::<T, S>(&self.scene, run, displacement, looks)))
     }
+    fn any_motion(&self) -> AnyMotion<'_> {
+        <S as Model<f64>>::Config::erase(&self.scene)
+    }
 }
 
-impl<B: Scene + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<fx128>> AnyScene for Rigid<B> {
+impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMotion<fx128>> AnyScene for Rigid<B> {
     fn id(&self) -> &'static str {
         self.id
     }
@@ -350,5 +357,8 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<fx128>> AnySce
     }
     fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_step::<T, B>(&self.scene, run, stride)))
+    }
+    fn any_motion(&self) -> AnyMotion<'_> {
+        <B as RigidBody<f64>>::Position::erase(&self.scene)
     }
 }

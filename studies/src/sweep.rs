@@ -41,6 +41,12 @@ impl Progress {
         Progress { label: None }
     }
 
+    /// A bar of that label if a person is watching standard error.
+    pub fn on_terminal(label: &str, quiet: bool) -> Self {
+        let watched = !quiet && std::io::IsTerminal::is_terminal(&std::io::stderr());
+        Progress { label: watched.then(|| label.to_owned()) }
+    }
+
     fn bar(&self, length: usize) -> ProgressBar {
         let Some(label) = &self.label else { return ProgressBar::hidden() };
         let template = "{prefix:>14} [{bar:40}] {pos}/{len} {eta}";

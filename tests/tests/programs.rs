@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::Stdio;
+use std::path::Path;
+use std::process::{Output, Stdio};
 
 use verification::programs::{PROGRAMS, assert_same, files, program, run, text};
 
@@ -192,4 +193,42 @@ fn a_scene_given_twice_is_one_and_two_runs_are_no_sweep() {
     let output = run("convergence", &["--scene", "oscillator", "--method", "rk4", "--steps", "64,128"], out.path());
     assert_eq!(output.status.code(), Some(0));
     assert!(text(&output.stdout).contains("not tested"), "{}", text(&output.stdout));
+}
+
+/// `bounds` at the root of the workspace, where the committed file lies.
+fn bounds(arguments: &[&str]) -> Output {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
+    program("bounds").args(arguments).current_dir(root).output().expect("the binary was built with the workspace")
+}
+
+// Fails if: a broken bound, a malformed file or a missing reason ends with the wrong code or without its place.
+#[test]
+fn bounds_ends_with_0_1_or_2_and_says_where() {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let (path, junit) = (directory.path().join("b.csv"), directory.path().join("b.xml"));
+    let [file, xml] = [&path, &junit].map(|path| path.to_str().expect("a temporary path is text"));
+    let small = ["--quick", "--scene", "oscillator", "--method", "rk4"];
+    let good = bounds(&small);
+    assert_eq!(good.status.code(), Some(0), "{}{}", text(&good.stdout), text(&good.stderr));
+    assert!(text(&good.stdout).contains("bounds hold, 0 broken, 0 not tested"), "{}", text(&good.stdout));
+
+    let row = "oscillator,rk4,f64,position,error-at-step,64,2.75,m,1e-3,1e-2,2e-3,measured x 5: a test,";
+    let header = "scene,method,precision,quantity,kind,steps,end_s,unit,low,high,measured,reason,mutant";
+    fs::write(&path, format!("{header}\n{row}\n# end: 1 rows\n")).expect("written");
+    let broken = bounds(&["--bounds", file, "--junit", xml]);
+    assert_eq!(broken.status.code(), Some(1), "{}", text(&broken.stderr));
+    assert!(text(&broken.stdout).starts_with("broken bound"), "{}", text(&broken.stdout));
+    assert!(fs::read_to_string(&junit).expect("written").contains("failures=\"1\""));
+
+    let refused = bounds(&["--bounds", file, "--update"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("--reason"), "{}", text(&refused.stderr));
+    assert!(fs::read_to_string(&path).expect("untouched").contains(row));
+
+    fs::write(&path, format!("{header}\n{row}\n")).expect("written");
+    let cut = bounds(&["--bounds", file]);
+    assert_eq!(cut.status.code(), Some(2));
+    assert!(text(&cut.stderr).contains("b.csv:2:0: truncated"), "{}", text(&cut.stderr));
+    assert_eq!(bounds(&["--bounds", "nowhere.csv"]).status.code(), Some(2));
+    assert_eq!(bounds(&["--scene", "oscillator", "--method", "rk4/world-omega"]).status.code(), Some(2));
 }

@@ -5,7 +5,6 @@ mod list;
 mod program;
 mod voice;
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, ValueEnum};
@@ -89,10 +88,18 @@ impl Format {
 /// More threads than any machine has cores.
 const MOST_THREADS: usize = 1024;
 
-fn threads(text: &str) -> Result<usize, String> {
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
     let remedy = format!("give at least 1 and at most {MOST_THREADS}, or leave the flag out for all cores");
     let number = text.trim().parse().ok().filter(|n| (1..=MOST_THREADS).contains(n));
     number.ok_or_else(|| format!("not a number of threads; {remedy}"))
+}
+
+/// Runs what follows on so many threads; on all cores where none is given.
+pub fn use_threads(threads: Option<usize>) {
+    if let Some(threads) = threads {
+        // Fails only if a pool exists already, and then its size was chosen by the same flag.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
 }
 
 impl Common {
@@ -107,12 +114,8 @@ impl Common {
     /// # Errors
     /// An unknown name, a parameter outside its range, or a number of steps that is zero.
     pub fn selection(&self) -> Result<Selection, Error> {
-        if let Some(threads) = self.threads {
-            // Fails only if a pool exists already, and then its size was chosen by the same flag.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        }
-        let label = (!self.quiet && std::io::stderr().is_terminal()).then(String::new);
-        Ok(Selection { progress: Progress { label }, ..self.plan.selection()? })
+        use_threads(self.threads);
+        Ok(Selection { progress: Progress::on_terminal("", self.quiet), ..self.plan.selection()? })
     }
 
     /// The same with the plan of the file, where one is named.

@@ -51,6 +51,16 @@ pub enum Drift {
 }
 
 impl Drift {
+    /// Every one.
+    pub const ALL: [Drift; 6] = [
+        Drift::Energy,
+        Drift::MomentumNorm,
+        Drift::MomentumDirection,
+        Drift::AngularMomentumNorm,
+        Drift::AngularMomentumDirection,
+        Drift::QuaternionNorm,
+    ];
+
     /// The name in tables.
     pub fn id(self) -> &'static str {
         match self {
@@ -253,7 +263,7 @@ impl<'a> Track<'a> {
 }
 
 /// Errors of an account against the true one, scalars as they are, vectors by norm and direction.
-fn drifts(seen: &[Entry], truth: &[Entry]) -> Vec<(Drift, f64)> {
+pub(crate) fn drifts(seen: &[Entry], truth: &[Entry]) -> Vec<(Drift, f64)> {
     let mut errors = Vec::new();
     for (a, b) in seen.iter().zip(truth) {
         let norms = || (norm(a.value.iter().copied()) - norm(b.value.iter().copied())).to_f64();
@@ -284,7 +294,8 @@ fn angle(a: &[fx128], b: &[fx128]) -> f64 {
     2.0 * difference.atan2(sum).to_f64()
 }
 
-fn scale(reference: &[Entry], drift: Drift) -> f64 {
+/// Size of a balance at the start; 1 for an angle and for the quaternion.
+pub(crate) fn scale(reference: &[Entry], drift: Drift) -> f64 {
     let balance = match drift {
         Drift::Energy => Balance::Energy,
         Drift::MomentumNorm => Balance::Momentum,

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use super::lanes::{Coordinates, Eight, run_pack};
 use super::random::Generator;
+use crate::erased::{FlatSpace, Place};
 use crate::error::Error;
 use crate::observation::Observation;
 use crate::scene::{AnyScene, Motion, Particles, Rigid, RigidMotion, Scene};
@@ -38,13 +39,8 @@ pub trait Members: Send + Sync {
     fn alone(&self, member: usize) -> &dyn AnyScene;
     /// What is seen of some of them, at most eight, at the end of a run in lanes, `None` for one that left the finite numbers.
     /// The outer `None`: the method does not run in lanes.
-    fn ends(
-        &self,
-        members: Range<usize>,
-        method: MethodId,
-        end_s: f64,
-        steps: u64,
-    ) -> Option<Vec<Option<Observation>>>;
+    fn ends(&self, members: Range<usize>, method: MethodId, end_s: f64, steps: u64)
+    -> Option<Vec<Option<Observation>>>;
 }
 
 macro_rules! list {
@@ -97,7 +93,7 @@ struct Drawing<S, M> {
 impl<S> Members for Drawing<S, Particles<S>>
 where
     S: Drawn + Motion<f32> + Motion<f64> + Motion<faer::fx128> + Model<Eight>,
-    <S as Model<f64>>::Config: Coordinates,
+    <S as Model<f64>>::Config: Coordinates + FlatSpace,
     <S as Model<Eight>>::Config: Coordinates,
 {
     fn rule(&self) -> &'static str {
@@ -116,7 +112,8 @@ where
         end_s: f64,
         steps: u64,
     ) -> Option<Vec<Option<Observation>>> {
-        let starts: Vec<_> = self.members[members].iter().map(|member| Motion::<f64>::exact(&member.scene, 0.0)).collect();
+        let starts: Vec<_> =
+            self.members[members].iter().map(|member| Motion::<f64>::exact(&member.scene, 0.0)).collect();
         let ends = run_pack::<Eight, _, _>(&self.law, &starts, method, end_s, steps)?;
         Some(ends.iter().map(|end| end.as_ref().map(|state| Motion::<f64>::observe(&self.law, state))).collect())
     }
@@ -124,7 +121,7 @@ where
 
 impl<B> Members for Drawing<B, Rigid<B>>
 where
-    B: Drawn + RigidMotion<f32> + RigidMotion<f64> + RigidMotion<faer::fx128> + RigidBody<Eight>,
+    B: Drawn + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMotion<faer::fx128> + RigidBody<Eight>,
 {
     fn rule(&self) -> &'static str {
         B::RULE
@@ -190,7 +187,8 @@ macro_rules! swung {
 swung!(Oscillator, DampedOscillator, ForcedOscillator);
 
 impl Drawn for Pendulum {
-    const RULE: &'static str = "the energy is kept, the angle uniform among those that it reaches; a swing goes either way";
+    const RULE: &'static str =
+        "the energy is kept, the angle uniform among those that it reaches; a swing goes either way";
     fn drawn(&self, random: &mut Generator) -> Self {
         // k^2 = sin^2(angle / 2) + (omega / (2 w0))^2 is the energy over 2 m g l.
         let double_w0 = 2.0 * (self.gravity / self.length).sqrt();

@@ -14,6 +14,7 @@ use integrator::methods::MethodId;
 use reports::{Block, Claim, Figure};
 use serde::{Deserialize, Serialize};
 
+use crate::cli::Format;
 use crate::error::Error;
 use crate::observation::{Observation, Quantity};
 use crate::produce::{Product, from_rows};
@@ -108,7 +109,7 @@ impl Study for Ensemble {
 ///
 /// # Errors
 /// A size or a choice that leaves nothing to be run, named with what would be right.
-pub fn ensemble(selection: &mut Selection, count: usize, seed: u64) -> Result<Product, Error> {
+pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Format) -> Result<Product, Error> {
     let place = || "--ensemble".to_owned();
     if !(1..=MOST_MEMBERS).contains(&count) {
         return Err(Error::Plan { place: place(), message: format!("{count} members; give 1 to {MOST_MEMBERS}") });
@@ -137,10 +138,10 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64) -> Result<Pr
     if let Some(label) = &mut selection.progress.label {
         Ensemble::ID.clone_into(label);
     }
-    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed))?;
+    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), format)?;
     let cost = cost::table(selection, count, seed)?;
     let name = format!("{}.csv", cost.name);
-    product.files.push((name.clone(), cost.csv));
+    product.files.push((name.clone(), cost.csv.into_bytes()));
     product.section.blocks.push(Block::Table { caption: cost.caption.to_owned(), table: cost.table, csv: Some(name) });
     Ok(product)
 }
@@ -191,7 +192,11 @@ pub fn measure(selection: &Selection, count: usize, seed: u64) -> Vec<Row> {
     let cost = |job: &Job<'_>| job.steps * u64::from(job.method.order());
     let done = in_parallel(&jobs, cost, &selection.progress, Job::errors);
     let errors = done.chunks(chunks.len()).map(<[_]>::concat);
-    sweeps.iter().zip(errors).flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e)).collect()
+    sweeps
+        .iter()
+        .zip(errors)
+        .flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e))
+        .collect()
 }
 
 fn steps(selection: &Selection, scene: &dyn AnyScene) -> Vec<u64> {

@@ -217,7 +217,7 @@ fn destination_claims(rows: &[Row]) -> Vec<Claim> {
 }
 
 /// What a scheme keeps to rounding on a free body.
-pub(super) fn conserved(scheme: Scheme) -> &'static [Conserved] {
+pub(crate) fn conserved(scheme: Scheme) -> &'static [Conserved] {
     use integrator::methods::MethodId::{ExplicitEuler, ImplicitMidpoint, Rk4, SemiImplicitEuler, VelocityVerlet};
     use integrator::rigid_body::Storage::{BodyOmega, WithoutGyroscopicTerm, WorldMomentum};
     match (scheme.rule, scheme.storage) {

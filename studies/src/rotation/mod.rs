@@ -1,6 +1,6 @@
 //! What do engines store and how do they step? Every scheme in use for the rotation of a rigid body, on exact motions.
 
-mod claims;
+pub(crate) mod claims;
 pub mod free;
 pub mod laws;
 pub mod long;
