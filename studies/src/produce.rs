@@ -11,6 +11,7 @@ use crate::provenance;
 use crate::rotation::Rotation;
 use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
+use crate::teach;
 
 /// What a study has made: files to be written, and its part of the page.
 pub struct Product {
@@ -112,6 +113,8 @@ pub fn report(common: &Common) -> Result<Vec<Claim>, Error> {
         sections,
         footer: provenance::lines(common),
     };
+    let rows = files.iter().find(|(name, _)| name == "convergence.csv").map_or("", |(_, csv)| csv);
+    files.push((teach::FILE.to_owned(), teach::page(rows, &common.set, &provenance::lines(common))?));
     files.push(("manifest.json".to_owned(), provenance::manifest(common)));
     files.push(("index.html".to_owned(), page.html()?));
     out.write_all(&files)?;

@@ -7,13 +7,13 @@ use integrator::{Model, Real, Single, State};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
+use crate::displaced::run_displaced;
 use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
 use crate::residual::{Residual, residual};
 use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
 use crate::scenes::parameters::Parameters;
-use crate::stability::displaced::run_displaced;
 
 /// What a reader should know of a scene before looking at its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
