@@ -284,7 +284,8 @@ fn the_page_is_small_and_loads_nothing() {
     for loader in
         ["src=", "url(", "@import", "<link", "<iframe", "fetch(", "import(", "XMLHttpRequest", "http:", "https:"]
     {
-        let found = page.find(loader);
+        // A clip path is a place in the same drawing.
+        let found = page.replace("url(#", "").find(loader);
         assert!(found.is_none(), "{loader} at {found:?}");
     }
     assert!(!page.contains("{{"), "every part of the page is filled in");

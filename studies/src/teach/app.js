@@ -38,14 +38,14 @@ function exact() {
 
 // A run over the whole picture.
 function run(m, steps) {
-  const end_s = scene.end, keys = { scene: state.scene, set: settings(), ...m.keys, precision: state.precision, end_s, steps, stride: Math.ceil(steps / LOOKS) };
+  const end_s = steps * view.h, keys = { scene: state.scene, set: settings(), ...m.keys, precision: state.precision, end_s, steps, stride: Math.ceil(steps / looks()) };
   const result = table(ask("run", keys)), { rows } = result, truth = exact();
   const energy = scene.balance("energy"), e0 = rows[0][energy.from], see = pictured(scene, values());
   const finite = rows.filter((r) => Number.isFinite(r[energy.from]));
   result.points = rows.map(see);
   result.energy = finite.map((r) => [r[1], r[energy.from] / e0]);
   result.lastRatio = result.outcome === "finished" ? result.energy.at(-1)[1] : Infinity;
-  const against = energy.conserved ? () => 1 : (t) => truth.energy[Math.round((t / end_s) * looks())][1];
+  const against = energy.conserved ? () => 1 : (t) => truth.energy[Math.min(looks(), Math.round((t / scene.end) * looks()))][1];
   result.energyChange = result.outcome === "finished" ? largest(result.energy.map(([t, r]) => Math.abs(r - against(t)))) : Infinity;
   const spin = scene.balance("angular-momentum");
   if (spin && spin.conserved) {
@@ -53,7 +53,7 @@ function run(m, steps) {
     result.fourth = rows.slice(1).map((r) => [r[1], Math.abs(size(r) / l0 - 1)]);
   } else if (!scene.omega) {
     // The exact motion at the times of the looks; the end may lie between two.
-    const stride = Math.ceil(steps / LOOKS), whole = Math.floor(steps / stride), q = scene.quantities[0];
+    const stride = Math.ceil(steps / looks()), whole = Math.floor(steps / stride), q = scene.quantities[0];
     const there = table(ask("exact", { scene: state.scene, set: settings(), end_s: (end_s * whole * stride) / steps, steps: whole })).rows;
     result.fourth = rows.slice(1, whole + 1).map((r, k) => [r[1], norm(columns(r, q).map((x, i) => x - columns(there[k + 1], q)[i]))]);
   } else result.fourth = [];
@@ -110,8 +110,9 @@ const view = {
 
 function look() {
   view.scene = scene;
-  view.steps = Math.min(mostSteps(), stepsTo(scene.end, state.h));
-  view.h = scene.end / view.steps;
+  // The run ends with a whole step, near the end of the picture.
+  view.h = Math.max(state.h, scene.end / mostSteps());
+  view.steps = stepsTo(scene.end, view.h);
   view.omega = scene.omega ? scene.omega(values()) : NaN;
   view.homega = view.omega * view.h;
   view.entries = chosen();

@@ -96,13 +96,17 @@ function show(svg, inside, name) {
   svg.setAttribute("aria-label", name);
 }
 
-// The unit sphere seen from (1, -1.6, 0.9): what lies behind is faint. series: {points: unit vectors, css}.
-const EYE = (() => {
+// Where to look at the sphere from: from the side of most of the points `seen`, and a little from the front and above.
+function eye(seen) {
   const unit = (v) => v.map((c) => c / Math.hypot(...v)), cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const out = unit([1, -1.6, 0.9]), right = unit(cross([0, 0, 1], out));
+  const mean = [0, 1, 2].map((i) => seen.reduce((sum, v) => sum + v[i], 0) / seen.length);
+  const out = unit([mean[0] * 2 + 0.3, mean[1] * 2 - 0.5, mean[2] + 0.25]), right = unit(cross([0, 0, 1], out));
   return { out, right, up: cross(out, right) };
-})();
-function sphere(svg, { series, marks = [], name }) {
+}
+
+// The unit sphere: what lies behind is faint. series: {points: unit vectors, css}.
+function sphere(svg, { series, marks = [], name, seen }) {
+  const EYE = eye(seen);
   const R = 128, cx = W / 2, cy = H / 2 - 6, along = (v, e) => v[0] * e[0] + v[1] * e[1] + v[2] * e[2];
   const place = (v) => [cx + R * along(v, EYE.right), cy - R * along(v, EYE.up), along(v, EYE.out)];
   // The line in pieces, in front and behind.

@@ -13,7 +13,7 @@ function draw() {
   $("h-value").textContent = `h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${view.steps} steps`;
   $("h").setAttribute("aria-valuetext", `${short(view.h)} seconds`);
   const stop = STOPS[state.stop], own = stop.set.scene === state.scene && stop.set.methods.every((id) => state.methods.includes(id));
-  $("story").innerHTML = `<p>${own ? stop.story(view) : "You have left the path, and everything stays live: choose, drag, compare. “Start this one again” takes you back."}</p>`;
+  $("story").innerHTML = `<p>${own ? stop.story(view) : "You have left the path, and everything stays live: choose, drag, compare. “Start over” takes you back."}</p>`;
 }
 
 // From the smallest to the largest, with some room; not further than `most` beyond what the exact motion needs.
@@ -32,7 +32,7 @@ function drawPicture(runs) {
   const name = `${title} of ${scene.title}: exact motion and ${far}; step ${short(view.h)} seconds`;
   const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.points, css: css(m), dots: view.steps <= 60 && scene.picture !== "sphere" }))];
   const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.points.at(-1), css: css(m) }));
-  if (scene.picture === "sphere") return sphere(svg, { series, marks, name });
+  if (scene.picture === "sphere") return sphere(svg, { series, marks, name, seen: truth });
   const [q, v] = scene.quantities, part = (i) => extent(truth.map((p) => p[i]), runs.flatMap(([, r]) => r.points.map((p) => p[i])));
   const labels = {
     phase: [`${QUANTITY[q.id]} (${q.unit})`, `${QUANTITY[v.id]} (${v.unit})`],
@@ -83,7 +83,7 @@ function drawFourth(runs) {
   const time = { from: 0, to: scene.end, label: "time (s)" };
   if (Number.isFinite(view.omega)) {
     title.textContent = "Stability";
-    note.textContent = "growth of the worst direction in one step of a spring";
+    note.textContent = "of a spring, in one step";
     const at = runs.map(([m]) => [m, radiusAt(m)]);
     return chart(svg, {
       x: { from: 0, to: 3.2, label: "ωh" }, y: { from: 0.3, to: 10, log: true, label: "largest factor in a step" }, shade: [1, 10],
@@ -103,7 +103,7 @@ function drawFourth(runs) {
 
 function drawTable(runs) {
   const q = scene.quantities[0];
-  $("cost-head").innerHTML = `<tr><th scope="col">Method</th><th scope="col" class="right">evaluations in ${scene.end} s</th><th scope="col" class="right">largest change of energy</th><th scope="col" class="right">error after ${scene.horizon_s} s (${q.unit})</th><th scope="col" class="right">for half the step</th><th scope="col">run</th></tr>`;
+  $("cost-head").innerHTML = `<tr><th scope="col">Method</th><th scope="col" class="right">evaluations in ${scene.end}&nbsp;s</th><th scope="col" class="right">largest change of energy</th><th scope="col" class="right">error after ${scene.horizon_s}&nbsp;s (${q.unit})</th><th scope="col" class="right">for half the step</th><th scope="col">run</th></tr>`;
   const most = largest(runs.map(([, r]) => r.evaluations)) || 1;
   $("cost").innerHTML = runs.map(([m, r]) => `<tr><th scope="row"><i class="swatch ${css(m)}"></i>${escaped(m.title)}</th><td class="right"><i class="bar ${css(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}</td>
     <td class="right">${inParts(r.energyChange)}</td><td class="right">${short(view.error(m))}</td><td class="right">${short(view.error(m, 2))}</td>

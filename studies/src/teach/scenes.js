@@ -8,7 +8,7 @@ const SCENES = {
   "kepler/eccentric": { title: "Planet on a thin ellipse", end: 20, h: [0.005, 0.5], picture: "orbit" },
   "charged-particle/magnetic": { title: "Charge in a magnetic field", end: 20, h: [0.01, 1], picture: "circle" },
   "bouncing-ball": { title: "Bouncing ball", end: 8, h: [0.002, 0.2], picture: "height" },
-  "torque-free-spin": { title: "Spinning box", end: 20, h: [0.005, 0.5], picture: "sphere", axis: 2 },
+  "torque-free-spin": { title: "Spinning box", end: 10, h: [0.005, 0.5], picture: "sphere", axis: 2 },
   "tennis-racket": { title: "Box about its middle axis", end: 12, h: [0.005, 0.4], picture: "sphere", axis: 1 },
 };
 const QUANTITY = { "position": "position", "velocity": "velocity", "attitude": "angle", "angular-velocity": "angular velocity" };

@@ -26,7 +26,7 @@ const STOPS = [
   },
   {
     title: "Order", question: "What does order mean?",
-    set: { scene: "pendulum", methods: ["explicit-euler", "velocity-verlet", "rk4"], h: 0.05 },
+    set: { scene: "pendulum", methods: ["explicit-euler", "velocity-verlet", "rk4"], h: 0.0125 },
     story(v) {
       const part = (m) => `${escaped(m.title)} ${code(short(v.error(m)))} → ${code(short(v.error(m, 2)))}, ${times(v.error(m) / v.error(m, 2))} less`;
       return `Halve the step and look at the error after ${code(v.scene.horizon_s)} s: ${v.entries.map(part).join("; ")}. A method of order p gains
@@ -46,7 +46,7 @@ const STOPS = [
   },
   {
     title: "The cliff", question: "What happens at ωh = 2?",
-    set: { scene: "oscillator", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.985 },
+    set: { scene: "oscillator", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.982 },
     story(v) {
       const r = v.radius("semi-implicit-euler");
       return `Now ωh = ${code(v.homega.toPrecision(4))}. One step of semi-implicit Euler stretches the worst direction by
@@ -72,9 +72,9 @@ const STOPS = [
     set: { scene: "bouncing-ball", methods: ["explicit-euler", "velocity-verlet", "rk4"], h: 0.03 },
     story(v) {
       const m = METHODS.find((m) => m.id === "rk4");
-      const list = [1, 2, 4, 8].map((k) => code(short(v.error(m, k)))).join(", ");
+      const list = [1, 2, 3, 5].map((k) => code(short(v.error(m, k)))).join(", ");
       return `In flight Verlet and RK4 are exact. But the floor is noticed only at the end of a step, up to h too late, and nothing inside the method
-        knows. RK4 with this step, a half, a quarter, an eighth of it errs by ${list} m: it jumps about under a line of slope 1. Its energy has
+        knows. RK4 with this step, a half, a third, a fifth of it errs by ${list} m: it jumps about under a line of slope 1. Its energy has
         changed by ${code(short(v.runs.rk4 ? v.runs.rk4.energyChange : NaN))}; explicit Euler's, at every step, by m g²h²/2.`;
     },
   },
@@ -83,9 +83,11 @@ const STOPS = [
     set: { scene: "kepler/eccentric", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.02 },
     story(v) {
       const one = (m) => { const need = v.needs(m, 0.01); return `${escaped(m.title)} ${need ? `h = ${code(short(need.h))} s and ${code(need.evaluations)} evaluations` : "a smaller step than any of the report's"}`; };
-      return `Ask for its shortest time. This planet rushes past its sun in ${code(short(v.scene.time_scale_s))} s, and your step is
-        ${code(short(v.h / v.scene.time_scale_s))} of that. For an error of 1 % of the distance after ${code(v.scene.horizon_s)} s: ${v.entries.map(one).join("; ")}.
-        Then ask what must not drift, and what happens in between: a contact, a spin, a stiff spring.`;
+      const change = (m) => `${escaped(m.title)} ${code(short(v.runs[m.id].energyChange))}`;
+      return `Ask for an error of 1 % of the distance after ${code(v.scene.horizon_s)} s, and the report answers: ${v.entries.map(one).join("; ")}. But that is
+        before the planet passes its sun, and passing takes ${code(short(v.scene.time_scale_s))} s: your step is ${code(short(v.h / v.scene.time_scale_s))} of it. Over
+        ${code(v.scene.end)} s the energy changes by ${v.entries.map(change).join(", ")} of itself, all of it there. Ask for the shortest time of
+        your scene, and for what must not drift; then drag.`;
     },
   },
 ];
