@@ -36,6 +36,7 @@ pub enum Error {
         message: String,
     },
     /// A result that cannot be shown or written.
+    #[cfg(feature = "programs")]
     #[error(transparent)]
     Report(#[from] reports::Error),
 }

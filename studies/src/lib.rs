@@ -6,35 +6,65 @@
 //! Architecture invariants: every number shown is in a CSV; the same plan gives the same bytes; a failed run never scores;
 //! figures and claims need no run, only rows.
 
+//! Without the feature `programs` only what one run needs is left: scenes, their exact motion, runs and their errors.
+//! It is what a web page runs.
+
+// What only the studies call is no waste where they are left out.
+#![cfg_attr(not(feature = "programs"), allow(dead_code))]
+
 #[macro_use]
 pub mod run;
-pub mod adequacy;
-pub mod bounds;
-
-pub mod cli;
-pub mod convergence;
-pub mod drift;
-pub mod ensemble;
+pub mod displaced;
 pub mod erased;
 pub mod error;
-mod findings;
+pub mod errors;
 pub mod fit;
-pub mod formulas;
 pub mod growth;
 pub mod observation;
-pub mod operations;
-pub mod order;
-pub mod page;
-pub mod plan;
-pub mod produce;
-pub mod provenance;
 pub mod residual;
-pub mod rotation;
 pub mod scene;
 pub mod scenes;
 pub mod special;
+
+#[cfg(feature = "programs")]
+pub mod adequacy;
+#[cfg(feature = "programs")]
+pub mod bounds;
+#[cfg(feature = "programs")]
+pub mod cli;
+#[cfg(feature = "programs")]
+pub mod convergence;
+#[cfg(feature = "programs")]
+pub mod drift;
+#[cfg(feature = "programs")]
+pub mod ensemble;
+#[cfg(feature = "programs")]
+mod findings;
+#[cfg(feature = "programs")]
+pub mod formulas;
+#[cfg(feature = "programs")]
+pub mod operations;
+#[cfg(feature = "programs")]
+pub mod order;
+#[cfg(feature = "programs")]
+pub mod page;
+#[cfg(feature = "programs")]
+pub mod plan;
+#[cfg(feature = "programs")]
+pub mod produce;
+#[cfg(feature = "programs")]
+pub mod provenance;
+#[cfg(feature = "programs")]
+pub mod rotation;
+#[cfg(feature = "programs")]
 pub mod stability;
+#[cfg(feature = "programs")]
 pub mod study;
+#[cfg(feature = "programs")]
 pub mod summary;
+#[cfg(feature = "programs")]
 pub mod sweep;
+#[cfg(feature = "programs")]
+pub mod teach;
+#[cfg(feature = "programs")]
 pub mod tradeoff;

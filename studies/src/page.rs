@@ -12,6 +12,7 @@ use crate::formulas;
 use crate::scene::{AnyScene, ExpectedOrder, StabilityLimit};
 use crate::scenes;
 use crate::study::{Study, short};
+use crate::teach;
 
 /// The name of a scene or preset in a sentence: `forced-oscillator/resonance` is 'Forced oscillator, resonance'.
 pub fn scene_title(id: &str) -> String {
@@ -20,9 +21,6 @@ pub fn scene_title(id: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The name of the teaching page, which the report leads to where there is one.
-pub const TEACH: &str = "teach.html";
-
 /// The whole page: the studies, what matters most in them, methods and scenes, and where the numbers come from.
 ///
 /// # Errors
@@ -30,13 +28,11 @@ pub const TEACH: &str = "teach.html";
 pub fn html(
     mut sections: Vec<Section>,
     scenes: &[Box<dyn AnyScene>],
-    has_teaching_page: bool,
     footer: Vec<(String, String)>,
 ) -> Result<String, Error> {
     let findings = findings(&sections);
     sections.push(methods_and_scenes(scenes, &sections));
-    let links =
-        has_teaching_page.then(|| ("Drag the step and watch".to_owned(), TEACH.to_owned())).into_iter().collect();
+    let links = vec![("Drag the step and watch".to_owned(), teach::FILE.to_owned())];
     let page = Page {
         title: "How accurate is a fixed step?".to_owned(),
         lead: "Explicit and semi-implicit Euler, with four yardsticks, on scenes whose exact motion is known: how wrong is \

@@ -15,6 +15,7 @@ use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
 use crate::study::{Derived, Selection, Study};
+use crate::teach;
 use crate::tradeoff::Tradeoff;
 
 /// What a study has made: files to be written, and its part of the page.
@@ -196,9 +197,12 @@ pub fn report(common: &Common) -> Result<Judged, Error> {
         sections.push(product.section);
         claims.extend(product.claims);
     }
-    let has_teaching_page = files.iter().any(|(name, _)| name == page::TEACH);
-    let scenes = source.manifest.plan.selection()?.scenes;
-    let html = page::html(sections, &scenes, has_teaching_page, source.manifest.lines())?;
+    let rows = files.iter().find(|(name, _)| name == "convergence.csv").map_or(&[][..], |(_, csv)| csv);
+    let (plan, about) = (&source.manifest.plan, source.manifest.lines());
+    let teaching = teach::page(&String::from_utf8_lossy(rows), &plan.set, &about)?;
+    files.push((teach::FILE.to_owned(), teaching.into_bytes()));
+    let scenes = plan.selection()?.scenes;
+    let html = page::html(sections, &scenes, about)?;
     files.push(("index.html".to_owned(), html.into_bytes()));
     write(&out, common, files, &source.manifest)?;
     Ok(Judged { claims, manifest: source.manifest })

@@ -9,6 +9,7 @@ use integrator::{Model, Real, Single, State};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
+use crate::displaced::run_displaced;
 use crate::erased::{AnyMotion, FlatSpace, Place};
 use crate::error::Error;
 use crate::growth::Law;
@@ -16,7 +17,7 @@ use crate::observation::{Observation, Quantity};
 use crate::residual::{Residual, residual};
 use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
 use crate::scenes::parameters::Parameters;
-use crate::stability::displaced::run_displaced;
+#[cfg(feature = "programs")]
 use crate::tradeoff::timed::{self, Lap, Laps};
 
 /// What a reader should know of a scene before looking at its numbers.
@@ -249,9 +250,11 @@ pub trait AnyScene: Send + Sync {
 
     /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
     /// [`timed`](crate::tradeoff::timed).
+    #[cfg(feature = "programs")]
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap>;
 
     /// The same with a step that exists for rigid bodies only.
+    #[cfg(feature = "programs")]
     fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
         let _ = (run, laps);
         None
@@ -302,6 +305,7 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))
     }
+    #[cfg(feature = "programs")]
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
             Precision::F32 => timed::particles_explicit::<f32, S>(&self.scene, run, laps),
@@ -340,6 +344,7 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMoti
     fn run(&self, run: &Run, stride: u64) -> Trajectory {
         in_precision!(run.precision, T => run_body::<T, B>(&self.scene, run, stride))
     }
+    #[cfg(feature = "programs")]
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
             _ if run.update != AttitudeUpdate::Exponential => None,
@@ -348,6 +353,7 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMoti
             Precision::DoubleDouble => None,
         }
     }
+    #[cfg(feature = "programs")]
     fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
         match run.precision {
             Precision::F32 => Some(timed::step::<f32, B>(&self.scene, run, laps)),

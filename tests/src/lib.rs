@@ -1,5 +1,6 @@
 //! Shared helpers of the tests. The tests themselves are the files of `tests/tests/`.
 
+pub mod chromium;
 mod decimal;
 mod difference;
 pub mod programs;

@@ -218,7 +218,7 @@ fn oscillator_errors_over_a_uniform_phase_are_distributed_as_a_cosine() {
 fn every_start_of_a_projectile_has_the_same_error() {
     let rows = measure(&selection("constant-force", &IN_LANES, &[64]), 100, 5);
     let acceleration = Vector3::new(0.625, -0.3125, -12.1875).norm() / 1.25;
-    let expected = acceleration * 1.5 * (1.5 / 64.0) / 2.0;
+    let expected: f64 = acceleration * 1.5 * (1.5 / 64.0) / 2.0;
     for method in [MethodId::ExplicitEuler, MethodId::SemiImplicitEuler] {
         let row = first(&rows, method, Quantity::Position);
         for error in [row.median, row.percentile_95, row.worst] {

@@ -6,18 +6,14 @@ mod orders;
 
 pub use orders::{Measure, OrderRow, orders, tolerance};
 
-use std::borrow::Cow;
-use std::collections::BTreeMap;
-
-use faer::fx128;
-use integrator::Real;
 use integrator::methods::MethodId;
 use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::observation::{Observation, Quantity};
-use crate::run::{Outcome, Precision, Run, Trajectory};
+use crate::errors::{self, Errors, Truth};
+use crate::observation::Quantity;
+use crate::run::{Outcome, Precision, Trajectory};
 use crate::scene::{AnyScene, ExpectedOrder};
 use crate::study::{Derived, Selection, Study};
 use crate::sweep::in_parallel;
@@ -26,8 +22,6 @@ use crate::sweep::in_parallel;
 pub const HALVINGS: u32 = 12;
 /// The same with `--quick`.
 pub const QUICK_HALVINGS: u32 = 9;
-/// Times at which a run is compared with the exact motion, evenly spaced; also the end.
-const CHECKPOINTS: u64 = 32;
 
 /// The error of one quantity in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,7 +99,7 @@ impl Study for Convergence {
 
 struct Job<'a> {
     scene: &'a dyn AnyScene,
-    exact: &'a [Observation],
+    truth: &'a Truth,
     method: MethodId,
     steps: u64,
 }
@@ -113,15 +107,15 @@ struct Job<'a> {
 /// Runs every scene, method and step in every precision.
 fn measure(selection: &Selection) -> Vec<Row> {
     let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
-    let exact: Vec<Vec<Observation>> =
-        in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| exact_motion(scene.as_ref()));
+    let truths: Vec<Truth> =
+        in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| Truth::of(scene.as_ref()));
     let mut jobs = Vec::new();
-    for (scene, exact) in selection.scenes.iter().zip(&exact) {
+    for (scene, truth) in selection.scenes.iter().zip(&truths) {
         for &method in &selection.methods {
             let halved = (0..=halvings).map(|k| scene.scene().info().coarsest_steps << k);
             let all_steps = if selection.steps.is_empty() { halved.collect() } else { selection.steps.clone() };
             for steps in all_steps {
-                jobs.push(Job { scene: scene.as_ref(), exact, method, steps });
+                jobs.push(Job { scene: scene.as_ref(), truth, method, steps });
             }
         }
     }
@@ -130,20 +124,9 @@ fn measure(selection: &Selection) -> Vec<Row> {
     rows.into_iter().flatten().collect()
 }
 
-/// The exact motion at the checkpoints of every run, k T / 32.
-fn exact_motion(scene: &dyn AnyScene) -> Vec<Observation> {
-    let end = fx128::lit(scene.scene().info().horizon_s);
-    let at = |k: u64| scene.exact(end * fx128::lit(k as f64) / fx128::lit(CHECKPOINTS as f64));
-    (0..=CHECKPOINTS).map(at).collect()
-}
-
 impl Job<'_> {
     fn rows(&self, precisions: &[Precision]) -> Vec<Row> {
-        let run = |precision| {
-            let end_s = self.scene.scene().info().horizon_s;
-            let run = Run::new(self.method, precision, end_s, self.steps);
-            self.scene.run(&run, (self.steps / CHECKPOINTS).max(1))
-        };
+        let run = |precision| errors::run(self.scene, self.method, precision, self.steps);
         let reference = run(Precision::DoubleDouble);
         let row = |&precision: &Precision| match precision {
             Precision::DoubleDouble => self.compare(precision, &reference, &reference),
@@ -152,66 +135,33 @@ impl Job<'_> {
         precisions.iter().flat_map(row).collect()
     }
 
-    /// The exact motion at a step. Where the number of steps is a power of two the step is a checkpoint.
-    fn exact_at(&self, step: u64) -> Cow<'_, Observation> {
-        if (step * CHECKPOINTS).is_multiple_of(self.steps) {
-            Cow::Borrowed(&self.exact[(step * CHECKPOINTS / self.steps) as usize])
-        } else {
-            let end = fx128::lit(self.scene.scene().info().horizon_s);
-            Cow::Owned(self.scene.exact(end * fx128::lit(step as f64) / fx128::lit(self.steps as f64)))
-        }
-    }
-
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
-        let errors = largest(run.seen.iter().map(|(step, seen)| seen.distances(&self.exact_at(*step))));
-        let rounding = largest(run.seen.iter().zip(&reference.seen).map(|((_, a), (_, b))| a.distances(b)));
-        let end = run.end().map(|seen| seen.distances(&self.exact_at(self.steps)));
-        let rounding_end = run.end().zip(reference.end()).map(|(a, b)| a.distances(b));
-        let pick = |list: &Option<Vec<(Quantity, f64)>>, quantity| {
-            list.as_ref()?.iter().find(|(q, _)| *q == quantity).map(|(_, x)| *x).filter(|x| x.is_finite())
+        let row = |errors: Errors| {
+            let theory = self.scene.scene().theory(self.method, errors.quantity);
+            Row {
+                scene: self.scene.id().to_owned(),
+                method: self.method.id().to_owned(),
+                precision,
+                steps: self.steps,
+                h_s: self.scene.scene().info().horizon_s / self.steps as f64,
+                quantity: errors.quantity,
+                unit: errors.quantity.unit().to_owned(),
+                outcome: run.outcome,
+                failed_step: run.failed_step,
+                error_end: errors.end,
+                error_max: errors.max,
+                rounding_end: errors.rounding_end,
+                rounding_max: errors.rounding_max,
+                scale: errors.scale,
+                evaluations: run.evaluations,
+                theory_order: match theory.order {
+                    ExpectedOrder::Exact => None,
+                    ExpectedOrder::Of(order) | ExpectedOrder::Envelope(order) => Some(order),
+                },
+                theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
+                theory_constant: theory.constant,
+            }
         };
-        let last = self.exact_at(self.steps);
-        let finished = run.outcome == Outcome::Finished;
-        let quantities = last.values.iter().map(|(quantity, _)| *quantity);
-        quantities
-            .map(|quantity| {
-                let theory = self.scene.scene().theory(self.method, quantity);
-                Row {
-                    scene: self.scene.id().to_owned(),
-                    method: self.method.id().to_owned(),
-                    precision,
-                    steps: self.steps,
-                    h_s: self.scene.scene().info().horizon_s / self.steps as f64,
-                    quantity,
-                    unit: quantity.unit().to_owned(),
-                    outcome: run.outcome,
-                    failed_step: run.failed_step,
-                    error_end: pick(&end, quantity),
-                    error_max: if finished { errors.get(&quantity).copied() } else { None },
-                    rounding_end: pick(&rounding_end, quantity),
-                    rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
-                    scale: last.scale(quantity),
-                    evaluations: run.evaluations,
-                    theory_order: match theory.order {
-                        ExpectedOrder::Exact => None,
-                        ExpectedOrder::Of(order) | ExpectedOrder::Envelope(order) => Some(order),
-                    },
-                    theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
-                    theory_constant: theory.constant,
-                }
-            })
-            .collect()
+        self.truth.compare(self.scene, self.steps, run, reference).into_iter().map(row).collect()
     }
-}
-
-/// The largest distance of each quantity; a NaN stays.
-fn largest(distances: impl Iterator<Item = Vec<(Quantity, f64)>>) -> BTreeMap<Quantity, f64> {
-    let mut largest = BTreeMap::new();
-    for (quantity, distance) in distances.flatten() {
-        let entry = largest.entry(quantity).or_insert(distance);
-        if distance > *entry || distance.is_nan() {
-            *entry = distance;
-        }
-    }
-    largest
 }

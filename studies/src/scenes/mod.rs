@@ -46,7 +46,7 @@ use crate::error::Error;
 use crate::scene::{AnyScene, Particles, Rigid};
 
 macro_rules! list {
-    ($($id:literal => $kind:ident($scene:expr);)*) => {
+    ($($id:literal => $kind:ident($scene:expr) $($taught:ident)?;)*) => {
         /// The names of all scenes and presets, in the order in which they are shown.
         pub const IDS: &[&str] = &[$($id),*];
 
@@ -54,6 +54,20 @@ macro_rules! list {
         pub fn catalogue() -> Vec<Box<dyn AnyScene>> {
             vec![$(Box::new($kind { id: $id, scene: $scene })),*]
         }
+
+        /// Those of the teaching page. A module that asks for no others holds no others.
+        pub fn taught() -> Vec<Box<dyn AnyScene>> {
+            let mut all: Vec<Box<dyn AnyScene>> = Vec::new();
+            $( if_taught!($($taught)?; all.push(Box::new($kind { id: $id, scene: $scene }))); )*
+            all
+        }
+    };
+}
+
+macro_rules! if_taught {
+    (; $($rest:tt)*) => {};
+    (taught; $then:expr) => {
+        $then
     };
 }
 
@@ -62,31 +76,31 @@ list! {
     "linear-drag" => Particles(LinearDrag::default());
     "quadratic-drag/fall" => Particles(QuadraticDrag::default());
     "quadratic-drag/rise" => Particles(QuadraticDrag::rise());
-    "oscillator" => Particles(Oscillator::default());
-    "damped-oscillator" => Particles(DampedOscillator::default());
+    "oscillator" => Particles(Oscillator::default()) taught;
+    "damped-oscillator" => Particles(DampedOscillator::default()) taught;
     "damped-oscillator/critical" => Particles(DampedOscillator::critical());
     "damped-oscillator/over-damped" => Particles(DampedOscillator::over_damped());
     "forced-oscillator" => Particles(ForcedOscillator::default());
     "forced-oscillator/resonance" => Particles(ForcedOscillator::resonance());
     "forced-oscillator/near-resonance" => Particles(ForcedOscillator::near_resonance());
-    "pendulum" => Particles(Pendulum::default());
+    "pendulum" => Particles(Pendulum::default()) taught;
     "pendulum/rotation" => Particles(Pendulum::rotation());
     "pendulum/near-separatrix" => Particles(Pendulum::near_separatrix());
-    "kepler" => Particles(Kepler::default());
+    "kepler" => Particles(Kepler::default()) taught;
     "kepler/circular" => Particles(Kepler::circular());
     "kepler/pericentre" => Particles(Kepler::pericentre());
-    "kepler/eccentric" => Particles(Kepler::eccentric());
+    "kepler/eccentric" => Particles(Kepler::eccentric()) taught;
     "charged-particle" => Particles(ChargedParticle::default());
-    "charged-particle/magnetic" => Particles(ChargedParticle::magnetic());
+    "charged-particle/magnetic" => Particles(ChargedParticle::magnetic()) taught;
     "spring-chain" => Particles(SpringChain::default());
-    "bouncing-ball" => Particles(BouncingBall::default());
+    "bouncing-ball" => Particles(BouncingBall::default()) taught;
     "bouncing-ball/inelastic" => Particles(BouncingBall::inelastic());
     "principal-axis-torque" => Rigid(PrincipalAxisTorque::default());
     "sphere-torque" => Rigid(SphereTorque::default());
     "symmetric-top/disc" => Rigid(SymmetricTop::disc());
     "symmetric-top/rod" => Rigid(SymmetricTop::rod());
-    "torque-free-spin" => Rigid(TorqueFreeSpin::default());
-    "tennis-racket" => Rigid(TorqueFreeSpin::tennis_racket());
+    "torque-free-spin" => Rigid(TorqueFreeSpin::default()) taught;
+    "tennis-racket" => Rigid(TorqueFreeSpin::tennis_racket()) taught;
     "heavy-top" => Rigid(HeavyTop::default());
     "manufactured" => Rigid(Manufactured::default());
     "box-tumbling" => Rigid(BoxTumbling::default());

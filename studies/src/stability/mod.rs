@@ -4,7 +4,7 @@ pub mod amplification;
 pub mod answer;
 pub mod bisect;
 pub mod claims;
-pub mod displaced;
+pub use crate::displaced;
 pub mod failure;
 mod figures;
 pub mod judge;

@@ -1,0 +1,136 @@
+// Charts as SVG text: one string a chart, set at once. 420 x 300 units; colours come from the style sheet.
+const W = 420, H = 300, LEFT = 58, RIGHT = 12, TOP = 12, BOTTOM = 42;
+const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
+
+// Four digits, and a power of ten where it needs one.
+function short(x) {
+  if (x === null || x === undefined || Number.isNaN(x)) return "–";
+  if (x === 0) return "0";
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
+  const size = Math.abs(x);
+  if (size >= 1e-3 && size < 1e5) return x.toPrecision(4).replace(/\.?0+$/, (z) => (x.toPrecision(4).includes(".") ? "" : z)).replace("-", "−");
+  const [m, e] = x.toExponential(2).split("e");
+  return `${m}·10${superscript(+e)}`.replace(/^-/, "−");
+}
+const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[+c]));
+
+// Round numbers between two ends, about five of them.
+function ticks(low, high) {
+  const raw = (high - low) / 5, ten = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((k) => k * ten >= raw) * ten, list = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) list.push(k * step);
+  return list.map((v) => [v, String(+v.toPrecision(6)).replace("-", "−")]);
+}
+function decades(low, high) {
+  const every = Math.max(1, Math.ceil((high - low) / 6)), list = [];
+  for (let k = Math.ceil(low - 1e-9); k <= high + 1e-9; k++) if (k % every === 0) list.push([k, k === 0 ? "1" : k === 1 ? "10" : `10${superscript(k)}`]);
+  return list;
+}
+
+// An axis: from its two ends in data (logarithms where log) to pixels.
+function axis({ from, to, log, label }, first, last) {
+  const [a, b] = log ? [Math.log10(from), Math.log10(to)] : [from, to];
+  const scale = (last - first) / (b - a);
+  const at = (v) => first + ((log ? Math.log10(v) : v) - a) * scale;
+  const marks = (log ? decades(a, b) : ticks(a, b)).map(([v, text]) => [first + (v - a) * scale, text]);
+  return { at, marks, label };
+}
+
+// Points that are no place on the sheet break the line; far ones are kept near, so that no renderer chokes on them.
+function path(points, x, y) {
+  let d = "", up = true;
+  for (const [a, b] of points) {
+    const px = x.at(a), py = y.at(b);
+    if (!Number.isFinite(px) || !Number.isFinite(py)) { up = true; continue; }
+    d += `${up ? "M" : "L"}${Math.max(-900, Math.min(1300, px)).toFixed(1)} ${Math.max(-900, Math.min(1300, py)).toFixed(1)}`;
+    up = false;
+  }
+  return d;
+}
+
+const frame = (id, inside) =>
+  `<defs><clipPath id="clip-${id}"><rect x="${LEFT}" y="${TOP}" width="${W - LEFT - RIGHT}" height="${H - TOP - BOTTOM}"/></clipPath></defs>${inside}`;
+
+// series: {points, css, dots}; marks: {at: [x, y], css}; shade: [y0, y1, css]; square: the same scale on both axes.
+function chart(svg, { x: xs, y: ys, series, marks = [], shade, lines = [], square, name }) {
+  if (square) [xs, ys] = squared(xs, ys);
+  const id = svg.id, x = axis(xs, LEFT, W - RIGHT), y = axis(ys, H - BOTTOM, TOP);
+  let s = "";
+  if (shade) s += `<rect class="shade" x="${LEFT}" width="${W - LEFT - RIGHT}" y="${y.at(shade[1]).toFixed(1)}" height="${(y.at(shade[0]) - y.at(shade[1])).toFixed(1)}"/>`;
+  for (const [px] of x.marks) s += `<path class="grid" d="M${px.toFixed(1)} ${TOP}V${H - BOTTOM}"/>`;
+  for (const [, py] of y.marks.map(([p, t]) => [t, p])) s += `<path class="grid" d="M${LEFT} ${py.toFixed(1)}H${W - RIGHT}"/>`;
+  let inside = "";
+  for (const { from, to, css, text } of lines) {
+    inside += `<path class="line ${css}" d="${path([from, to], x, y)}"/>`;
+    if (text) inside += `<text class="note" x="${(x.at(to[0]) - 5).toFixed(1)}" y="${TOP + 14}" text-anchor="end">${escaped(text)}</text>`;
+  }
+  for (const { points, css, dots } of series) {
+    inside += `<path class="line ${css}" d="${path(points, x, y)}"/>`;
+    if (dots) for (const p of points) inside += dot(x.at(p[0]), y.at(p[1]), 2.2, css);
+  }
+  for (const { at, css } of marks) inside += dot(x.at(at[0]), y.at(at[1]), 6, `mark ${css}`);
+  s += `<g clip-path="url(#clip-${id})">${inside}</g>`;
+  for (const [px, text] of x.marks) s += `<text x="${px.toFixed(1)}" y="${H - BOTTOM + 17}" text-anchor="middle">${text}</text>`;
+  for (const [py, text] of y.marks) s += `<text x="${LEFT - 6}" y="${(py + 4).toFixed(1)}" text-anchor="end">${text}</text>`;
+  s += `<path class="border" d="M${LEFT} ${TOP}V${H - BOTTOM}H${W - RIGHT}"/>`;
+  s += `<text x="${(LEFT + W - RIGHT) / 2}" y="${H - 6}" text-anchor="middle">${escaped(x.label)}</text>`;
+  s += `<text transform="translate(13 ${(TOP + H - BOTTOM) / 2}) rotate(-90)" text-anchor="middle">${escaped(y.label)}</text>`;
+  show(svg, frame(id, s), name);
+}
+
+function dot(px, py, r, css) {
+  if (!Number.isFinite(px) || !Number.isFinite(py)) return "";
+  // A mark that has left the sheet stays at its edge.
+  const cx = Math.max(LEFT + 3, Math.min(W - RIGHT - 3, px)), cy = Math.max(TOP + 3, Math.min(H - BOTTOM - 3, py));
+  return `<circle class="dot ${css}" cx="${cx.toFixed(1)}" cy="${cy.toFixed(1)}" r="${r}"/>`;
+}
+
+function squared(xs, ys) {
+  const wide = (xs.to - xs.from) / (W - LEFT - RIGHT), high = (ys.to - ys.from) / (H - TOP - BOTTOM), k = Math.max(wide, high);
+  const grown = (s, pixels) => { const c = (s.from + s.to) / 2, r = (k * pixels) / 2; return { ...s, from: c - r, to: c + r }; };
+  return [grown(xs, W - LEFT - RIGHT), grown(ys, H - TOP - BOTTOM)];
+}
+
+function show(svg, inside, name) {
+  svg.innerHTML = inside;
+  svg.setAttribute("aria-label", name);
+}
+
+// Where to look at the sphere from: from the side of most of the points `seen`, and a little from the front and above.
+function eye(seen) {
+  const unit = (v) => v.map((c) => c / Math.hypot(...v)), cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const mean = [0, 1, 2].map((i) => seen.reduce((sum, v) => sum + v[i], 0) / seen.length);
+  const out = unit([mean[0] * 2 + 0.3, mean[1] * 2 - 0.5, mean[2] + 0.25]), right = unit(cross([0, 0, 1], out));
+  return { out, right, up: cross(out, right) };
+}
+
+// The unit sphere: what lies behind is faint. series: {points: unit vectors, css}.
+function sphere(svg, { series, marks = [], name, seen }) {
+  const EYE = eye(seen);
+  const R = 128, cx = W / 2, cy = H / 2 - 6, along = (v, e) => v[0] * e[0] + v[1] * e[1] + v[2] * e[2];
+  const place = (v) => [cx + R * along(v, EYE.right), cy - R * along(v, EYE.up), along(v, EYE.out)];
+  // The line in pieces, in front and behind.
+  const pieces = (points) => {
+    const d = ["", ""]; let before = -1;
+    for (const v of points) {
+      const [px, py, depth] = place(v), side = depth >= 0 ? 0 : 1, at = `${px.toFixed(1)} ${py.toFixed(1)}`;
+      if (!Number.isFinite(px)) { before = -1; continue; }
+      if (before >= 0 && side !== before) d[before] += `L${at}`;
+      d[side] += `${side === before ? "L" : "M"}${at}`;
+      before = side;
+    }
+    return d;
+  };
+  const circle = (f) => pieces(Array.from({ length: 73 }, (_, k) => f((k * Math.PI) / 36)));
+  let back = "", front = "";
+  const both = (d, css) => { back += `<path class="line behind ${css}" d="${d[1]}"/>`; front += `<path class="line ${css}" d="${d[0]}"/>`; };
+  for (const z of [-0.5, 0, 0.5]) both(circle((a) => [Math.cos(a) * Math.sqrt(1 - z * z), Math.sin(a) * Math.sqrt(1 - z * z), z]), "wire");
+  for (const m of [0, 1, 2]) both(circle((a) => [Math.sin(a) * Math.cos((m * Math.PI) / 3), Math.sin(a) * Math.sin((m * Math.PI) / 3), Math.cos(a)]), "wire");
+  for (const { points, css } of series) both(pieces(points), css);
+  for (const { at, css } of marks) {
+    const [px, py, depth] = place(at);
+    const text = Number.isFinite(px) ? `<circle class="dot mark ${css}${depth < 0 ? " behind" : ""}" cx="${px.toFixed(1)}" cy="${py.toFixed(1)}" r="6"/>` : "";
+    if (depth < 0) back += text; else front += text;
+  }
+  show(svg, `${back}<circle class="rim" cx="${cx}" cy="${cy}" r="${R}"/>${front}`, name);
+}

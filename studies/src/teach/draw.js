@@ -1,0 +1,111 @@
+// The four charts, the table and the story, from what `look` found.
+const nameOf = (m) => m.title;
+const css = (m) => `${color(m)}`;
+const inParts = (x) => (x === Infinity ? "without bound" : short(x));
+
+function draw() {
+  const runs = view.entries.map((m) => [m, view.runs[m.id]]);
+  drawPicture(runs);
+  drawEnergy(runs);
+  drawConvergence(runs);
+  drawFourth(runs);
+  drawTable(runs);
+  $("h-value").textContent = `h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${view.steps} steps`;
+  $("h").setAttribute("aria-valuetext", `${short(view.h)} seconds`);
+  const stop = STOPS[state.stop], own = stop.set.scene === state.scene && stop.set.methods.every((id) => state.methods.includes(id));
+  $("story").innerHTML = `<p>${own ? stop.story(view) : "You have left the path, and everything stays live: choose, drag, compare. “Start over” takes you back."}</p>`;
+}
+
+// From the smallest to the largest, with some room; not further than `most` beyond what the exact motion needs.
+function extent(exactValues, all, room = 0.08, most = 1.2) {
+  const [a, b] = [Math.min(...exactValues), Math.max(...exactValues)], w = b - a || 1;
+  const finite = all.filter(Number.isFinite);
+  const low = Math.max(a - most * w, Math.min(a, ...finite)), high = Math.min(b + most * w, Math.max(b, ...finite));
+  return { from: low - room * (high - low || 1), to: high + room * (high - low || 1) };
+}
+
+function drawPicture(runs) {
+  const [title, note] = PICTURE[scene.picture], truth = exact().points, svg = $("picture");
+  $("picture-title").textContent = title;
+  $("picture-note").textContent = note;
+  const far = runs.map(([m, r]) => `${nameOf(m)} ${r.outcome === "finished" ? "ends" : "fails"}`).join(", ");
+  const name = `${title} of ${scene.title}: exact motion and ${far}; step ${short(view.h)} seconds`;
+  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.points, css: css(m), dots: view.steps <= 60 && scene.picture !== "sphere" }))];
+  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.points.at(-1), css: css(m) }));
+  if (scene.picture === "sphere") return sphere(svg, { series, marks, name, seen: truth });
+  const [q, v] = scene.quantities, part = (i) => extent(truth.map((p) => p[i]), runs.flatMap(([, r]) => r.points.map((p) => p[i])));
+  const labels = {
+    phase: [`${QUANTITY[q.id]} (${q.unit})`, `${QUANTITY[v.id]} (${v.unit})`],
+    orbit: ["x (m)", "y (m)"], circle: ["across the field (m)", "across the field (m)"], height: ["time (s)", "height (m)"],
+  }[scene.picture];
+  const x = { ...part(0), label: labels[0] }, y = { ...part(1), label: labels[1] };
+  if (scene.picture === "height") Object.assign(x, { from: 0, to: scene.end });
+  chart(svg, { x, y, series, marks, square: scene.picture === "orbit" || scene.picture === "circle", name });
+}
+
+function drawEnergy(runs) {
+  const truth = exact().energy, all = runs.flatMap(([, r]) => r.energy.map((p) => p[1])), top = largest(all.filter(Number.isFinite));
+  const log = top > 4;
+  let y;
+  if (log) {
+    const low = Math.max(1e-6, Math.min(1, ...all.filter((e) => e > 0), ...truth.map((p) => p[1])));
+    y = { from: 10 ** Math.floor(Math.log10(low) - 0.01), to: Math.min(1e12, 10 ** Math.ceil(Math.log10(top))), log };
+  } else {
+    y = extent(truth.map((p) => p[1]), all.filter((e) => e > -4));
+    // Rounding is not worth a picture of its own.
+    if (y.to - y.from < 1e-3) { const c = (y.from + y.to) / 2; y = { from: c - 5e-4, to: c + 5e-4 }; }
+  }
+  const name = `Energy in parts of its start over ${scene.end} seconds: ${runs.map(([m, r]) => `${nameOf(m)} changes by ${inParts(r.energyChange)}`).join(", ")}`;
+  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.energy, css: css(m) }))];
+  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.energy.at(-1), css: css(m) }));
+  chart($("energy"), { x: { from: 0, to: scene.end, label: "time (s)" }, y: { ...y, label: "E / E₀" }, series, marks, name });
+}
+
+function drawConvergence(runs) {
+  const lines = runs.map(([m]) => [m, line(m)]), q = scene.quantities[0];
+  const good = (p) => p.error !== null && p.error > 0 && Number.isFinite(p.error);
+  const errors = lines.flatMap(([, l]) => l.points.filter(good).map((p) => p.error)), steps = lines.flatMap(([, l]) => l.points.map((p) => p.h));
+  const here = runs.map(([m]) => [m, errorOf(m, stepsTo(scene.horizon_s, view.h))]);
+  $("line-note").textContent = `error of the ${QUANTITY[q.id]} after ${scene.horizon_s} s${lines.every(([, l]) => l.reported) ? "" : ", computed here"}`;
+  const low = 10 ** Math.floor(Math.log10(Math.min(...errors, 1e-2)) - 0.01), high = 10 ** Math.ceil(Math.log10(Math.min(1e3, largest(errors) || 1)));
+  const x = { from: Math.min(...steps, view.h) / 1.3, to: Math.max(...steps, view.h) * 1.3, log: true, label: "step (s)" };
+  const name = `Error against step: ${here.map(([m, e]) => `${nameOf(m)} ${short(e.error)} ${q.unit}`).join(", ")} at ${short(view.h)} seconds`;
+  chart($("convergence"), {
+    x, y: { from: low, to: high, log: true, label: `error (${q.unit})` }, name,
+    series: lines.map(([m, l]) => ({ points: l.points.filter(good).map((p) => [p.h, p.error]), css: css(m), dots: true })),
+    lines: [{ from: [view.h, low], to: [view.h, high], css: "cursor" }],
+    marks: here.filter(([, e]) => good(e)).map(([m, e]) => ({ at: [e.h, e.error], css: css(m) })),
+  });
+}
+
+function drawFourth(runs) {
+  const title = $("fourth-title"), note = $("fourth-note"), svg = $("fourth");
+  const time = { from: 0, to: scene.end, label: "time (s)" };
+  if (Number.isFinite(view.omega)) {
+    title.textContent = "Stability";
+    note.textContent = "of a spring, in one step";
+    const at = runs.map(([m]) => [m, radiusAt(m)]);
+    return chart(svg, {
+      x: { from: 0, to: 3.2, label: "ωh" }, y: { from: 0.3, to: 10, log: true, label: "largest factor in a step" }, shade: [1, 10],
+      series: runs.map(([m]) => ({ points: amplification(m), css: css(m) })), marks: at.map(([m, r]) => ({ at: [view.homega, r], css: css(m) })),
+      lines: [{ from: [view.homega, 0.3], to: [view.homega, 10], css: "cursor" }],
+      name: `Stability: at omega h = ${view.homega.toPrecision(3)} one step stretches by ${at.map(([m, r]) => `${nameOf(m)} ${r.toPrecision(4)}`).join(", ")}; above one it grows`,
+    });
+  }
+  const spin = scene.balance("angular-momentum"), kept = spin && spin.conserved, unit = kept ? "|L| / |L₀| − 1" : "error (m)";
+  title.textContent = kept ? "Angular momentum" : "Distance from the exact motion";
+  note.textContent = kept ? "its length, in parts of the start" : "over the run";
+  const shown = runs.map(([m, r]) => [m, r.fourth.map(([t, x]) => [t, Math.max(x, 1e-17)])]);
+  const all = shown.flatMap(([, p]) => p.map((q) => q[1])).filter((x) => Number.isFinite(x));
+  const y = { from: 10 ** Math.floor(Math.log10(Math.min(1e-2, ...all)) - 0.01), to: 10 ** Math.ceil(Math.log10(Math.max(1, Math.min(1e3, largest(all))))), log: true, label: unit };
+  chart(svg, { x: time, y, series: shown.map(([m, points]) => ({ points, css: css(m) })), name: `${title.textContent}: largest ${runs.map(([m, r]) => `${nameOf(m)} ${inParts(r.fourthLargest)}`).join(", ")}` });
+}
+
+function drawTable(runs) {
+  const q = scene.quantities[0];
+  $("cost-head").innerHTML = `<tr><th scope="col">Method</th><th scope="col" class="right">evaluations in ${scene.end}&nbsp;s</th><th scope="col" class="right">largest change of energy</th><th scope="col" class="right">error after ${scene.horizon_s}&nbsp;s (${q.unit})</th><th scope="col" class="right">for half the step</th><th scope="col">run</th></tr>`;
+  const most = largest(runs.map(([, r]) => r.evaluations)) || 1;
+  $("cost").innerHTML = runs.map(([m, r]) => `<tr><th scope="row"><i class="swatch ${css(m)}"></i>${escaped(m.title)}</th><td class="right"><i class="bar ${css(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}</td>
+    <td class="right">${inParts(r.energyChange)}</td><td class="right">${short(view.error(m))}</td><td class="right">${short(view.error(m, 2))}</td>
+    <td>${r.outcome === "finished" ? "finished" : `${r.outcome} at step ${r.failedStep}`}</td></tr>`).join("");
+}

@@ -1,0 +1,93 @@
+// The guided path: eight questions. Each sets the page and says what to see; every number in it is computed as it is read.
+const code = (text) => `<span class="num">${escaped(text)}</span>`;
+const times = (x) => code(`${short(x)}×`);
+const ratioOf = (run) => run.energy.map(([, r]) => r);
+const STOPS = [
+  {
+    title: "Explicit Euler", question: "Why does explicit Euler gain energy?",
+    set: { scene: "oscillator", methods: ["explicit-euler", "semi-implicit-euler"], h: 0.05 },
+    story(v) {
+      const run = v.runs["explicit-euler"], gain = 1 + v.homega ** 2;
+      return `It goes straight on along the tangent, and a tangent leaves a circle outwards. One step multiplies the energy by
+        1 + (ωh)² = ${code(gain.toPrecision(8))}. ${code(v.steps)} steps make that ${times(gain ** v.steps)}; the run ended with
+        ${times(run.lastRatio)} the energy it began with. Make the step smaller: it gains more slowly, but it always gains.`;
+    },
+  },
+  {
+    title: "A band", question: "Why does semi-implicit Euler only oscillate?",
+    set: { scene: "oscillator", methods: ["semi-implicit-euler"], h: 0.25 },
+    story(v) {
+      const r = ratioOf(v.runs["semi-implicit-euler"]), seen = Math.max(...r) / Math.min(...r), x = v.homega;
+      return `It uses the new velocity to move, and so it conserves something after all: not the energy, but
+        v² + ω²x² − hω²xv, an ellipse leaning a little. Going round it, the energy swings and comes back. Largest over smallest:
+        ${code(seen.toPrecision(4))}; the ellipse says at most (2 + ωh)/(2 − ωh) = ${code(((2 + x) / (2 - x)).toPrecision(4))}. Drag the step, the band
+        widens; wait as long as you like, it never drifts.`;
+    },
+  },
+  {
+    title: "Order", question: "What does order mean?",
+    set: { scene: "pendulum", methods: ["explicit-euler", "velocity-verlet", "rk4"], h: 0.0125 },
+    story(v) {
+      const part = (m) => `${escaped(m.title)} ${code(short(v.error(m)))} → ${code(short(v.error(m, 2)))}, ${times(v.error(m) / v.error(m, 2))} less`;
+      return `Halve the step and look at the error after ${code(v.scene.horizon_s)} s: ${v.entries.map(part).join("; ")}. A method of order p gains
+        2<sup>p</sup>: twice, four times, sixteen times. On the convergence chart that is the slope of the line, and your step is the mark that
+        slides along it.`;
+    },
+  },
+  {
+    title: "Too small", question: "Why is smaller not always better?",
+    set: { scene: "oscillator", methods: ["velocity-verlet", "rk4"], h: 0.012, precision: "f32" },
+    story(v) {
+      const m = METHODS.find((m) => m.id === "rk4"), best = v.best(m);
+      return `This run is in f32, seven digits. RK4 errs by ${code(short(v.error(m)))} at this step, but by ${code(short(best.error))} at
+        h = ${code(short(best.h))} s: beyond that, each smaller step only adds one more rounding. The same step in f64 errs by
+        ${code(short(v.error(m, 1, "f64")))}. Slide up and down past the bottom of the line, then choose f64 and see the floor drop away.`;
+    },
+  },
+  {
+    title: "The cliff", question: "What happens at ωh = 2?",
+    set: { scene: "oscillator", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.982 },
+    story(v) {
+      const r = v.radius("semi-implicit-euler");
+      return `Now ωh = ${code(v.homega.toPrecision(4))}. One step of semi-implicit Euler stretches the worst direction by
+        ${code(r.toPrecision(6))}${r > 1 + 1e-9 ? `, and ${code(v.steps)} of them by ${times(r ** v.steps)}: it is over the cliff.` : ": nothing grows yet, though the motion is nonsense."}
+        Press → once or twice. There is no warning before 2 and no mercy after it: the stiffest spring of a scene decides the step for all of it.`;
+    },
+  },
+  {
+    title: "Quietly wrong", question: "Can everything be conserved and still be wrong?",
+    set: { scene: "torque-free-spin", methods: ["semi-implicit-euler", "no-gyroscopic-term"], h: 0.02 },
+    story(v) {
+      const m = v.entries.find((m) => m.id === "no-gyroscopic-term"), ok = v.entries.find((m) => m.id === "semi-implicit-euler");
+      if (!m || !ok) return "Choose both methods again to compare them.";
+      const run = v.runs[m.id];
+      return `Many engines leave out the gyroscopic term. Without it this box keeps its energy to ${code(short(run.energyChange))} and |L| to
+        ${code(short(run.fourthLargest))}, and after ${code(v.scene.horizon_s)} s it points ${code(short(v.error(m)))} rad wrong. With half the step:
+        ${code(short(v.error(m, 2)))} rad. No step is small enough; the axis spins where it should wander. With the term, half the step makes
+        ${code(short(v.error(ok)))} rad into ${code(short(v.error(ok, 2)))} rad, though its energy shows an error. Conservation is not accuracy.`;
+    },
+  },
+  {
+    title: "A bounce", question: "Why does a bouncing ball spoil every order?",
+    set: { scene: "bouncing-ball", methods: ["explicit-euler", "velocity-verlet", "rk4"], h: 0.03 },
+    story(v) {
+      const m = METHODS.find((m) => m.id === "rk4");
+      const list = [1, 2, 3, 5].map((k) => code(short(v.error(m, k)))).join(", ");
+      return `In flight Verlet and RK4 are exact. But the floor is noticed only at the end of a step, up to h too late, and nothing inside the method
+        knows. RK4 with this step, a half, a third, a fifth of it errs by ${list} m: it jumps about under a line of slope 1. Its energy has
+        changed by ${code(short(v.runs.rk4 ? v.runs.rk4.energyChange : NaN))}; explicit Euler's, at every step, by m g²h²/2.`;
+    },
+  },
+  {
+    title: "Your scene", question: "What step does a scene need?",
+    set: { scene: "kepler/eccentric", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.02 },
+    story(v) {
+      const one = (m) => { const need = v.needs(m, 0.01); return `${escaped(m.title)} ${need ? `h = ${code(short(need.h))} s and ${code(need.evaluations)} evaluations` : "a smaller step than any of the report's"}`; };
+      const change = (m) => `${escaped(m.title)} ${code(short(v.runs[m.id].energyChange))}`;
+      return `Ask for an error of 1 % of the distance after ${code(v.scene.horizon_s)} s, and the report answers: ${v.entries.map(one).join("; ")}. But that is
+        before the planet passes its sun, and passing takes ${code(short(v.scene.time_scale_s))} s: your step is ${code(short(v.h / v.scene.time_scale_s))} of it. Over
+        ${code(v.scene.end)} s the energy changes by ${v.entries.map(change).join(", ")} of itself, all of it there. Ask for the shortest time of
+        your scene, and for what must not drift; then drag.`;
+    },
+  },
+];

@@ -1,0 +1,158 @@
+//! A question: what to do, with which scene, method and step.
+
+use integrator::methods::{MethodId, RigidStep};
+use integrator::rigid_body::{AttitudeUpdate, Storage};
+use studies::error::Error;
+use studies::run::{Precision, Run, method_from_id};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Command {
+    /// What the scene is: parameters, quantities, balances, as text.
+    #[default]
+    Describe,
+    /// A run, observed every `stride` steps.
+    Run,
+    /// The exact motion at `steps` + 1 evenly spaced times.
+    Exact,
+    /// The errors of a run to the scene's horizon, as the convergence study measures them.
+    Errors,
+    /// The spectral radius of one step, at `steps` steps up to the length `end_s`.
+    Amplification,
+}
+
+/// The rule of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// A general method.
+    Method(MethodId),
+    /// A step for rigid bodies.
+    Rigid(RigidStep),
+}
+
+/// A question, read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What is asked.
+    pub command: Command,
+    /// Scene or preset.
+    pub scene: String,
+    /// Parameters that differ from the preset's: name and value.
+    pub set: Vec<(String, String)>,
+    /// The rule of a step.
+    pub rule: Rule,
+    /// What a rigid body stores.
+    pub storage: Storage,
+    /// How its attitude is advanced.
+    pub update: AttitudeUpdate,
+    /// The arithmetic.
+    pub precision: Precision,
+    /// End of the run, s.
+    pub end_s: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Steps between two looks.
+    pub stride: u64,
+    /// Whether the errors at the checkpoints are wanted too, as in the report; each is an exact motion more to be evaluated.
+    pub checkpoints: bool,
+    /// Whether the double-double run of the same step is wanted for the rounding errors.
+    pub rounding: bool,
+}
+
+impl Question {
+    /// Reads a question.
+    ///
+    /// # Errors
+    /// An unknown command, key or name, or a number that is none.
+    pub fn read(text: &str) -> Result<Self, Error> {
+        let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        let mut question = Question {
+            command: command(lines.next().unwrap_or_default())?,
+            scene: String::new(),
+            set: Vec::new(),
+            rule: Rule::Method(MethodId::SemiImplicitEuler),
+            storage: Storage::default(),
+            update: AttitudeUpdate::default(),
+            precision: Precision::F64,
+            end_s: 1.0,
+            steps: 1,
+            stride: 1,
+            checkpoints: false,
+            rounding: false,
+        };
+        for line in lines {
+            let (key, value) = line.split_once(' ').unwrap_or((line, ""));
+            question.take(key, value)?;
+        }
+        if question.steps == 0 || question.stride == 0 || !(question.end_s.is_finite() && question.end_s > 0.0) {
+            return Err(wrong("steps, stride, end_s", "must be greater than zero"));
+        }
+        Ok(question)
+    }
+
+    fn take(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        match key {
+            "scene" => value.clone_into(&mut self.scene),
+            "set" => {
+                let (name, value) = value.split_once('=').ok_or_else(|| wrong("set", "must be NAME=VALUE"))?;
+                self.set.push((name.to_owned(), value.to_owned()));
+            }
+            "method" => self.rule = Rule::Method(method_from_id(value)?),
+            "step" => self.rule = Rule::Rigid(named("step", RigidStep::ALL, RigidStep::id, value)?),
+            "storage" => self.storage = named("storage", &Storage::ALL, Storage::id, value)?,
+            "update" => self.update = named("update", &AttitudeUpdate::ALL, AttitudeUpdate::id, value)?,
+            "precision" => self.precision = Precision::from_id(value)?,
+            "end_s" => self.end_s = number(key, value)?,
+            "steps" => self.steps = number(key, value)?,
+            "stride" => self.stride = number(key, value)?,
+            "checkpoints" => self.checkpoints = number(key, value)?,
+            "rounding" => self.rounding = number(key, value)?,
+            _ => return Err(Error::unknown("key", key, KEYS.map(str::to_owned))),
+        }
+        Ok(())
+    }
+
+    /// The run that is asked for.
+    pub fn run<A>(&self, rule: A) -> Run<A> {
+        Run::new(rule, self.precision, self.end_s, self.steps).storing(self.storage, self.update)
+    }
+}
+
+const KEYS: [&str; 12] = [
+    "scene",
+    "set",
+    "method",
+    "step",
+    "storage",
+    "update",
+    "precision",
+    "end_s",
+    "steps",
+    "stride",
+    "checkpoints",
+    "rounding",
+];
+
+fn command(name: &str) -> Result<Command, Error> {
+    let all = [
+        ("describe", Command::Describe),
+        ("run", Command::Run),
+        ("exact", Command::Exact),
+        ("errors", Command::Errors),
+        ("amplification", Command::Amplification),
+    ];
+    named("command", &all, |(name, _)| name, name).map(|(_, command)| command)
+}
+
+fn named<A: Copy>(kind: &'static str, all: &[A], id: impl Fn(A) -> &'static str, name: &str) -> Result<A, Error> {
+    let found = all.iter().copied().find(|a| id(*a) == name);
+    found.ok_or_else(|| Error::unknown(kind, name, all.iter().map(|a| id(*a).to_owned())))
+}
+
+fn number<N: std::str::FromStr>(key: &str, text: &str) -> Result<N, Error> {
+    text.parse().map_err(|_| wrong(key, &format!("'{text}' is not of the right form")))
+}
+
+fn wrong(place: &str, message: &str) -> Error {
+    Error::Plan { place: place.to_owned(), message: message.to_owned() }
+}
