@@ -4,7 +4,7 @@ use std::any::Any;
 
 use faer::fx128;
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::{AttitudeUpdate, Kinematics, RigidBody, RigidModel, WorldOmega};
+use integrator::rigid_body::{Kinematics, RigidBody, RigidModel, WorldOmega};
 use integrator::{Model, Real, Single, State};
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
@@ -347,7 +347,7 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMoti
     #[cfg(feature = "programs")]
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
-            _ if run.update != AttitudeUpdate::Exponential => None,
+            _ if run.update != integrator::rigid_body::AttitudeUpdate::Exponential => None,
             Precision::F32 => timed::body_explicit::<f32, B>(&self.scene, run, laps),
             Precision::F64 => timed::body(&self.scene, run, laps),
             Precision::DoubleDouble => None,
