@@ -23,6 +23,7 @@ pub mod order;
 pub mod page;
 pub mod produce;
 mod provenance;
+mod reference;
 pub mod residual;
 pub mod rotation;
 pub mod scene;
