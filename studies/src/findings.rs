@@ -140,6 +140,38 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_finding_needs_its_claims_and_says_when_one_is_broken() {
+        let claim = |id: &str, measured: &str, verdict| Claim {
+            id: id.to_owned(),
+            study: String::new(),
+            statement: String::new(),
+            theory: String::new(),
+            measured: measured.to_owned(),
+            bound: String::new(),
+            verdict,
+        };
+        let section = |claims| [Section { blocks: vec![Block::Claims(claims)], ..Section::default() }];
+        let semi = claim("stability.limit.oscillator.semi-implicit-euler.f64", "2.00000 .. 2.00542", Verdict::Holds);
+        let rk4 = |verdict| claim("stability.limit.oscillator.rk4.f64", "2.82843 .. 2.83610", verdict);
+        assert_eq!(findings(&section(vec![semi.clone()])), []);
+        let [holding] = &findings(&section(vec![semi.clone(), rk4(Verdict::Holds)]))[..] else { panic!("one") };
+        assert_eq!((holding.number.as_str(), &holding.figure), ("h ω = 2.000 to 2.005", &None));
+        assert!(
+            holding.text.contains("RK4 fails at 2.828 to 2.836") && !holding.text.contains("broken"),
+            "{holding:?}"
+        );
+        let [doubtful] = &findings(&section(vec![semi, rk4(Verdict::Broken)]))[..] else { panic!("one") };
+        assert!(doubtful.text.contains("broken"), "{doubtful:?}");
+    }
+
+    #[test]
+    fn the_words_of_a_list_are_its_first_number_and_its_length() {
+        let measured = "attitude (end) 3.997; attitude (max) 3.99812";
+        assert_eq!(with_measured("{0:last} of {0:count}", 0, measured), "3.997 of 2");
+        assert_eq!(with_measured("{1} stays", 0, measured), "{1} stays");
+    }
+
+    #[test]
     fn numbers_are_cut_to_four_digits_and_words_are_left() {
         assert_eq!(readable("rate 6.246950228e-2 1/s"), "rate 0.06247 1/s");
         assert_eq!(readable("in [9.997478023e-1, 1.031485804e0]"), "in [0.9997, 1.031]");

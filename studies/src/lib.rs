@@ -41,6 +41,8 @@ pub mod ensemble;
 #[cfg(feature = "programs")]
 mod findings;
 #[cfg(feature = "programs")]
+mod reference;
+#[cfg(feature = "programs")]
 pub mod formulas;
 #[cfg(feature = "programs")]
 pub mod operations;

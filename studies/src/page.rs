@@ -1,17 +1,15 @@
-//! The report's page: what each study found, put together by scene; the findings; methods and scenes with their formulas.
+//! The report's page: what each study found, put together by scene, with what matters first.
 //!
 //! It follows from the products of the studies and from the scenes' own statements. Nothing is run here.
 
-use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::Storage;
 use reports::{Block, Claim, Page, Section, Table};
 
 use crate::error::Error;
 use crate::findings::findings;
-use crate::formulas;
-use crate::scene::{AnyScene, ExpectedOrder, StabilityLimit};
+use crate::reference::methods_and_scenes;
+use crate::scene::AnyScene;
 use crate::scenes;
-use crate::study::{Study, short};
+use crate::study::Study;
 use crate::teach;
 
 /// The name of a scene or preset in a sentence: `forced-oscillator/resonance` is 'Forced oscillator, resonance'.
@@ -170,134 +168,80 @@ fn group(study: &str, scene: &str, blocks: Vec<Block>) -> Block {
     Block::Group { id: anchor(study, scene), title: scene_title(scene), note: words.join(", "), blocks }
 }
 
-fn anchor(section: &str, name: &str) -> String {
+/// The anchor of what has that name within a section.
+pub(crate) fn anchor(section: &str, name: &str) -> String {
     format!("{section}-{}", name.replace('/', "-"))
 }
 
-/// The section on how each method steps, what a rigid body stores and what each scene is.
-pub(crate) fn methods_and_scenes(chosen: &[Box<dyn AnyScene>], studies: &[Section]) -> Section {
-    let mut blocks = vec![Block::Text(
-        "A step goes from the time t₀ to t₁ = t₀ + h; a is the rate of the velocity v. On a rotation 'q + h v' is q turned \
-         by the constant angular velocity v for the time h, and [u, w] = u × w; on a flat space the brackets vanish."
-            .to_owned(),
-    )];
-    blocks.extend(MethodId::ALL.iter().map(|&method| method_group(method)));
-    blocks.extend(RigidStep::ALL.iter().map(|&step| step_group(step)));
-    blocks.extend(std::iter::once(stored()));
-    blocks.extend(chosen.iter().map(|scene| scene_group(scene.as_ref(), studies)));
-    Section {
-        id: "reference".to_owned(),
-        title: "Methods and scenes".to_owned(),
-        intro: "Every step and every scene with its formula, its source, its parameters and what theory says of it beforehand."
-            .to_owned(),
-        blocks,
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use reports::Verdict;
 
-fn formulas(latex: &[&str]) -> impl Iterator<Item = Block> {
-    latex.iter().map(|&line| Block::Formula(line.to_owned()))
-}
-
-fn facts(facts: &[(&str, String)]) -> Block {
-    Block::Facts(facts.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect())
-}
-
-fn method_group(method: MethodId) -> Block {
-    let implicit = if method.is_implicit() { ", implicit: Newton's iteration" } else { "" };
-    let mut blocks: Vec<Block> = formulas(formulas::of_method(method)).collect();
-    blocks.push(facts(&[("source", formulas::source_of_method(method).to_owned()), ("name", method.id().to_owned())]));
-    let note = format!("order {}{implicit}", method.order());
-    Block::Group { id: anchor("method", method.id()), title: method.title().to_owned(), note, blocks }
-}
-
-fn step_group(step: RigidStep) -> Block {
-    let mut blocks: Vec<Block> = formulas(formulas::of_rigid_step(step)).collect();
-    blocks.push(facts(&[("source", step.source().to_owned()), ("name", step.id().to_owned())]));
-    let note = format!("order {}, rigid bodies only", step.order());
-    Block::Group { id: anchor("method", step.id()), title: step.title().to_owned(), note, blocks }
-}
-
-fn stored() -> Block {
-    let one = |storage: Storage| {
-        [
-            Block::Text(format!("{}:", scene_title(storage.id()).replace("omega", "ω"))),
-            Block::Formula(formulas::of_storage(storage).to_owned()),
-        ]
-    };
-    Block::Group {
-        id: "method-storage".to_owned(),
-        title: "What a rigid body stores".to_owned(),
-        note: "four models of the same motion, one of them wrong".to_owned(),
-        blocks: Storage::ALL.into_iter().flat_map(one).collect(),
-    }
-}
-
-fn scene_group(any: &dyn AnyScene, studies: &[Section]) -> Block {
-    let (scene, id) = (any.scene(), any.id());
-    let info = scene.info();
-    let mut parameters = Table::new(&["parameter", "value", "unit", "what it is", "allowed"], &["value"]);
-    for p in scene.parameters() {
-        parameters.push([p.name.to_owned(), p.value, p.unit.to_owned(), p.about.to_owned(), p.range.to_string()]);
-    }
-    let table = |caption: &str, table: Table| Block::Table { caption: caption.to_owned(), table, csv: None };
-    let mut blocks = vec![
-        Block::Formula(info.equation.to_owned()),
-        facts(&[
-            ("exact motion", info.source.to_owned()),
-            ("horizon", format!("{} s", info.horizon_s)),
-            ("time scale", format!("{} s", short(Some(info.time_scale_s)))),
-            ("name", id.to_owned()),
-        ]),
-        table("Parameters", parameters),
-        table("Error at the horizon beforehand: error = constant × h^order, to leading order", theory(any)),
-    ];
-    let limits = limits(any);
-    if !limits.rows.is_empty() {
-        blocks.push(table("Largest stable step, by theory", limits));
-    }
-    let groups = studies.iter().flat_map(|section| section.blocks.iter().map(move |block| (section, block)));
-    let seen = groups.filter_map(|(section, block)| match block {
-        Block::Group { id: group, .. } if *group == anchor(&section.id, id) => {
-            Some((section.title.clone(), format!("#{group}")))
+    #[test]
+    fn a_figure_or_a_claim_is_put_with_the_scene_that_its_name_holds() {
+        for (id, scene) in [
+            ("convergence-forced-oscillator-near-resonance-position", Some("forced-oscillator/near-resonance")),
+            ("precision-kepler-position", Some("kepler")),
+            ("adequacy-pendulum-1-mrad", Some("pendulum")),
+            ("stability-map-kepler-rk4", Some("kepler")),
+            ("rotation-error-torque-free-spin", Some("torque-free-spin")),
+            ("stability-map-damped-rk4", None),
+            ("rotation-axis-start-far-from-all-axes", None),
+        ] {
+            assert_eq!(scene_of_figure(id), scene, "{id}");
         }
-        _ => None,
-    });
-    let files: Vec<_> = seen.collect();
-    if !files.is_empty() {
-        blocks.push(Block::Links { caption: "In the studies".to_owned(), files });
-    }
-    Block::Group { id: anchor("scene", id), title: scene_title(id), note: info.about.to_owned(), blocks }
-}
-
-fn theory(any: &dyn AnyScene) -> Table {
-    let mut table = Table::new(&["method", "quantity", "order", "constant", "why"], &["order", "constant"]);
-    let start = any.exact(faer::fx128::ZERO);
-    for &method in MethodId::ALL {
-        for (quantity, _) in start.distances(&start) {
-            let theory = any.scene().theory(method, quantity);
-            let order = match theory.order {
-                ExpectedOrder::Exact => "exact".to_owned(),
-                ExpectedOrder::Of(order) => order.to_string(),
-                ExpectedOrder::Envelope(order) => format!("at least {order}"),
-            };
-            let constant = theory.constant.map_or_else(String::new, |constant| short(Some(constant)));
-            table.push([method.title(), quantity.id(), &order, &constant, theory.reason]);
+        for (id, scene) in [
+            ("drift.charged-particle/magnetic.rk4.energy", Some("charged-particle/magnetic")),
+            ("stability.limit.oscillator.rk4.f64", Some("oscillator")),
+            ("adequacy.box-tumbling-position.rk4", Some("box-tumbling")),
+            ("adequacy.quadratic-drag.sphere", Some("quadratic-drag")),
+            ("rotation.step-law.energy.asymmetric-body.rk4", None),
+        ] {
+            assert_eq!(scene_of_claim(&claim(id)), scene, "{id}");
         }
     }
-    table
-}
 
-fn limits(any: &dyn AnyScene) -> Table {
-    let mut table = Table::new(&["method", "largest step (s)", "why"], &["largest step (s)"]);
-    for &method in MethodId::ALL {
-        if let Some((limit, reason)) = any.scene().stability_limit(method) {
-            let step = match limit {
-                StabilityLimit::NoStep => "none is stable".to_owned(),
-                StabilityLimit::Below(h_s) => short(Some(h_s)),
-                StabilityLimit::Unlimited => "unlimited".to_owned(),
-            };
-            table.push([method.title(), &step, reason]);
+    fn claim(id: &str) -> Claim {
+        let text = String::new;
+        Claim {
+            id: id.to_owned(),
+            study: text(),
+            statement: text(),
+            theory: text(),
+            measured: text(),
+            bound: text(),
+            verdict: Verdict::Holds,
         }
     }
-    table
+
+    #[test]
+    fn what_belongs_to_one_scene_comes_together_and_nothing_is_lost() {
+        let mut table = Table::new(&["scene", "order"], &["order"]);
+        for row in [["kepler", "1"], ["oscillator", "2"], ["kepler", "4"]] {
+            table.push(row);
+        }
+        let claims = vec![
+            claim("drift.kepler.a"),
+            claim("drift.step-law.b"),
+            claim("drift.oscillator.c"),
+            claim("drift.kepler.d"),
+        ];
+        let blocks = vec![Block::Claims(claims), Block::Table { caption: String::new(), table, csv: None }];
+        let sorted = by_scene("drift", blocks);
+        let [Block::Claims(common), Block::Group { id: first, .. }, Block::Group { id: second, note, blocks, .. }] =
+            &sorted[..]
+        else {
+            panic!("{sorted:?}");
+        };
+        assert_eq!(
+            (common.len(), first.as_str(), second.as_str(), note.as_str()),
+            (1, "drift-oscillator", "drift-kepler", "2 hold")
+        );
+        let [Block::Claims(claims), Block::Table { table, .. }] = &blocks[..] else { panic!("{blocks:?}") };
+        assert_eq!(
+            (claims.len(), &table.headers[..], &table.rows[..]),
+            (2, &["order".to_owned()][..], &[vec!["1".to_owned()], vec!["4".to_owned()]][..])
+        );
+    }
 }

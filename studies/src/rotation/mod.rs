@@ -9,6 +9,7 @@ pub mod published;
 pub mod row;
 pub mod scheme;
 mod show;
+mod tables;
 
 use integrator::methods::MethodId;
 use integrator::rigid_body::{AttitudeUpdate, Storage};
@@ -51,7 +52,7 @@ impl Study for Rotation {
         rows
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
-        show::tables(rows)
+        tables::tables(rows)
     }
     fn figures(rows: &[Row]) -> Vec<Figure> {
         show::figures(rows)

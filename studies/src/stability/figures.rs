@@ -188,7 +188,7 @@ fn spin(rows: &[Row], scheme: SpinScheme) -> Option<Figure> {
     };
     let x = Axis::linear("spin in one step, h ω₃ (rad)").with_range(maps::SPIN.x[0], maps::SPIN.x[1]);
     let y = Axis::linear("ratio of inertia I₃ / I₁").with_range(maps::SPIN.y[0], maps::SPIN.y[1]);
-    let title = format!("Spinning body: {}", scheme.title());
+    let title = format!("Spinning body: {}", scheme.title().replace("omega", "ω"));
     Some(figure(&format!("map-spin-{}", scheme.id()), title, caption, x, y, layers, "torque-free-spin"))
 }
 
