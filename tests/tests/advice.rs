@@ -77,7 +77,7 @@ fn advice_in_frames_takes_whole_substeps_and_budgets_are_kept_by_counting() {
     assert!(advice.possible && pick.tried.steps.is_multiple_of(240));
     assert!(pick.tried.error.is_some_and(|error| error <= 1e-3));
     assert!((pick.h_s * pick.tried.steps as f64 - 4.0).abs() < 1e-12);
-    assert!(advice.text.contains("substeps a frame") && advice.text.contains("twice the step"), "{}", advice.text);
+    assert!(advice.text.contains("substeps a frame") && advice.text.contains("a whole frame"), "{}", advice.text);
     // The other way round: what the budget buys is an error.
     let budget = Question { budget_us: Some(50.0), error: None, ..question };
     let bought = advise(&chosen, budget).expect("a good question").picks[0].expect("something can be had");
