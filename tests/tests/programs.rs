@@ -163,9 +163,12 @@ fn advice_of_tradeoff_ends_as_a_ci_job_wants_it() {
     let (code, out, _) = ask(&[&racket[..], &["1e-3"]].concat());
     assert_eq!(code, Some(0), "{out}");
     assert!(
-        ["substeps", "stability", "checked", "twice the step", "runner-up"].iter().all(|w| out.contains(w)),
+        ["substeps a frame", "stability", "checked", "a whole frame", "runner-up"].iter().all(|w| out.contains(w)),
         "{out}"
     );
+    let (code, out, _) = ask(&["--scene", "pendulum", "--error", "1e-3"]);
+    assert_eq!(code, Some(0), "{out}");
+    assert!(["twice the step", "missed", "natural period", "times as much"].iter().all(|w| out.contains(w)), "{out}");
     let (code, out, _) = ask(&[&racket[..], &["1e-10", "--method", "explicit-euler"]].concat());
     assert_eq!(code, Some(1), "{out}");
     assert!(out.contains("cannot be had"), "{out}");

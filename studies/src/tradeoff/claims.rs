@@ -15,7 +15,7 @@ pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: String, [statement, theory, measured, bound]: [String; 4], holds: bool) -> Claim {
+fn claim(id: &str, [statement, theory, measured, bound]: [String; 4], holds: bool) -> Claim {
     let verdict = Verdict::from_comparison(holds);
     Claim { id: format!("tradeoff.{id}"), study: "tradeoff".to_owned(), statement, theory, measured, bound, verdict }
 }
@@ -33,7 +33,7 @@ fn evaluations(rows: &[Row]) -> Vec<Claim> {
             format!("{wrong} of {} runs differ", of_method.len()),
             "none differs".to_owned(),
         ];
-        Some(claim(format!("evaluations.{method}"), texts, wrong == 0))
+        Some(claim(&format!("evaluations.{method}"), texts, wrong == 0))
     };
     distinct(runs.iter().map(|row| row.method.clone())).into_iter().filter_map(one).collect()
 }
@@ -55,7 +55,7 @@ fn vanish(row: &Row) -> Claim {
         format!("within {ROUNDINGS} eps"),
     ];
     let holds = low <= theory * (1.0 + slack) && high >= theory * (1.0 - slack) && high - low <= slack * high;
-    claim(format!("vanish.{}.{height}", row.precision.id()), texts, holds)
+    claim(&format!("vanish.{}.{height}", row.precision.id()), texts, holds)
 }
 
 /// Scenes for which the models of rounding do not hold: a motion that forgets its errors, errors that jump with every bounce, and
@@ -91,7 +91,7 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
     let id = |what: &str| format!("u-curve.{scene}.{method}.{}.{what}", precision.id());
     vec![
         claim(
-            id("steps"),
+            &id("steps"),
             [
                 format!(
                     "the best step of {method} on {scene} in {} is where truncation meets rounding",
@@ -104,7 +104,7 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
             (fewest..=most).contains(&steps),
         ),
         claim(
-            id("error"),
+            &id("error"),
             [
                 format!(
                     "the least error of {method} on {scene} in {} is that of truncation and rounding",

@@ -30,11 +30,8 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     for charge in Charge::ALL {
         let all = duels(rows, charge);
         for level in LEVELS {
-            lines.push(question_row(
-                all.iter().filter(|d| d.level == level && d.best.is_some()).collect(),
-                level,
-                charge,
-            ));
+            let reached: Vec<&Duel> = all.iter().filter(|duel| duel.level == level && duel.best.is_some()).collect();
+            lines.push(question_row(&reached, level, charge));
         }
     }
     let [a, b, c, d, e] =
@@ -60,7 +57,7 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     })
 }
 
-fn question_row(duels: Vec<&Duel>, error_level: f64, charge: Charge) -> QuestionRow {
+fn question_row(duels: &[&Duel], error_level: f64, charge: Charge) -> QuestionRow {
     // A method that never reaches the level is beaten by any factor.
     let over = |of: fn(&Duel) -> &Offer| -> Vec<f64> {
         let one = |duel: &&Duel| match (factor(of(duel), &duel.semi_implicit), &duel.semi_implicit) {

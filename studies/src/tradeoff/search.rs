@@ -58,6 +58,8 @@ pub const MOST_STEPS: u64 = 1 << 20;
 pub const FINER: [f64; 8] = [1.04, 1.13, 1.27, 1.41, 1.62, 2.0, 2.83, 4.0];
 /// How finely the number of steps is found: one part in so many, or one step.
 const RESOLUTION: u64 = 128;
+/// Multiples of the first number of steps found beyond which no better one is looked for.
+const HIGHEST: u64 = 8;
 /// Doublings without a new least error after which rounding is to blame: a run that met a low error by luck is overtaken sooner by
 /// a method of first order, whose error falls by this power of two meanwhile.
 const STALLED: usize = 6;
@@ -117,17 +119,16 @@ fn narrow(first: u64, meets: impl Fn(&Tried) -> bool, run: impl Fn(u64) -> Tried
         }
         let breaks = FINER.iter().map(|f| (high as f64 * f).ceil() as u64).filter(|&m| !meets(&run(m))).max();
         let Some(breaks) = breaks else { return Search::Found(best) };
-        // Above the breaking one: the next that is kept.
-        low = breaks;
-        high = breaks + (breaks / RESOLUTION).max(1);
+        // Above the breaking one: the next that is kept. Where finer ones break it again and again, rounding does.
+        (low, high) = (breaks, breaks + (breaks / RESOLUTION).max(1));
         best = run(high);
-        while !meets(&best) {
-            if high > 8 * first {
-                return Search::Never { least: None };
-            }
+        while !meets(&best) && high <= HIGHEST * first {
             low = high;
             high += (high / 16).max(1);
             best = run(high);
+        }
+        if high > HIGHEST * first {
+            return Search::Never { least: None };
         }
     }
 }

@@ -1,0 +1,110 @@
+//! Advice of the tradeoff study, checked by running what it advises. Times are not looked at: they are not the same twice.
+
+use integrator::methods::MethodId;
+use studies::run::Precision;
+use studies::scenes;
+use studies::study::Selection;
+use studies::sweep::Progress;
+use studies::tradeoff::advice::{Question, advise};
+use studies::tradeoff::candidate::candidates;
+use studies::tradeoff::search::{FINER, Need, Search, attempt, search};
+use studies::tradeoff::truth::Truth;
+
+fn selection(id: &str) -> Selection {
+    Selection {
+        scenes: vec![scenes::by_id(id).expect("a scene of the catalogue")],
+        methods: MethodId::ALL.to_vec(),
+        precisions: vec![Precision::F64],
+        steps: Vec::new(),
+        quick: false,
+        progress: Progress::silent(),
+    }
+}
+
+/// Largest step of each method, found by running: it keeps the error, twice the step does not, and neither do finer ones break it.
+#[test]
+fn an_advised_step_keeps_the_error_and_twice_the_step_does_not() {
+    for (id, end_s) in [("pendulum", 2.75), ("kepler", 2.25), ("oscillator", 11.0), ("heavy-top", 1.75)] {
+        let scene = scenes::by_id(id).expect("a scene");
+        let truth = Truth::new(scene.as_ref(), end_s, 64);
+        for error in [1e-2, 1e-4] {
+            let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: 2 };
+            let mut found = 0;
+            for candidate in
+                candidates(scene.as_ref(), &[MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4])
+            {
+                let Search::Found(tried) = search(&need, candidate, Precision::F64) else { continue };
+                found += 1;
+                let error_at =
+                    |steps: u64| attempt(&need, candidate, Precision::F64, steps).error.unwrap_or(f64::INFINITY);
+                assert!(error_at(tried.steps) <= error, "{id} {candidate:?} {tried:?}");
+                assert!(error_at(tried.steps / 2) > error, "{id} {candidate:?} {tried:?}");
+                for finer in FINER {
+                    let steps = (tried.steps as f64 / 2.0 * finer).ceil() as u64 * 2;
+                    assert!(error_at(steps) <= error, "{id} {candidate:?}: {steps} steps miss what {tried:?} meets");
+                }
+            }
+            assert!(found >= 3, "{id} at {error}: {found} methods");
+        }
+    }
+}
+
+#[test]
+fn what_rounding_forbids_cannot_be_had_and_what_takes_too_long_is_said() {
+    let scene = scenes::by_id("oscillator").expect("a scene");
+    let truth = Truth::new(scene.as_ref(), 2.75, 64);
+    let need = |error| Need { scene: scene.as_ref(), truth: &truth, error, end_s: 2.75, unit: 2 };
+    let ask = |error, method, precision| {
+        let candidate = candidates(scene.as_ref(), &[method])[0];
+        search(&need(error), candidate, precision)
+    };
+    // f32 has seven digits.
+    assert!(matches!(ask(1e-9, MethodId::Rk4, Precision::F32), Search::Never { least: Some(_) }));
+    assert!(matches!(ask(1e-9, MethodId::Rk4, Precision::F64), Search::Found(_)));
+    // error = C h with C of the order of 1: 1e-12 takes 1e12 steps.
+    let Search::TooMany { about: Some(steps) } = ask(1e-12, MethodId::ExplicitEuler, Precision::F64) else {
+        panic!("explicit Euler cannot have 1e-12");
+    };
+    assert!((1e11..1e14).contains(&steps), "{steps}");
+}
+
+#[test]
+fn advice_in_frames_takes_whole_substeps_and_budgets_are_kept_by_counting() {
+    let chosen = selection("tennis-racket");
+    let question = Question { error: Some(1e-3), duration_s: Some(4.0), rate_hz: Some(60.0), budget_us: None };
+    let advice = advise(&chosen, question).expect("a good question");
+    let pick = advice.picks[0].expect("it can be had");
+    assert!(advice.possible && pick.tried.steps.is_multiple_of(240));
+    assert!(pick.tried.error.is_some_and(|error| error <= 1e-3));
+    assert!((pick.h_s * pick.tried.steps as f64 - 4.0).abs() < 1e-12);
+    assert!(advice.text.contains("substeps a frame") && advice.text.contains("a whole frame"), "{}", advice.text);
+    // The other way round: what the budget buys is an error.
+    let budget = Question { budget_us: Some(50.0), error: None, ..question };
+    let bought = advise(&chosen, budget).expect("a good question").picks[0].expect("something can be had");
+    assert!(bought.tried.error.is_some() && bought.tried.steps.is_multiple_of(240));
+    // Not even one step a frame.
+    let nothing = advise(&chosen, Question { budget_us: Some(1e-6), ..budget }).expect("a good question");
+    assert!(!nothing.possible && nothing.picks == [None]);
+}
+
+#[test]
+fn a_question_without_sense_is_refused_with_its_remedy() {
+    let good = Question { error: Some(1e-3), ..Question::default() };
+    let cases = [
+        (Question { error: Some(0.0), ..good }, true, "--error"),
+        (Question { error: Some(-1.0), ..good }, true, "--error"),
+        (Question { error: Some(f64::NAN), ..good }, true, "--error"),
+        (Question { rate_hz: Some(0.0), ..good }, true, "--rate"),
+        (Question { duration_s: Some(f64::INFINITY), ..good }, true, "--for"),
+        (Question { budget_us: Some(-5.0), ..good }, true, "--budget-us"),
+        (good, false, "--scene pendulum"),
+        (Question { error: None, rate_hz: Some(60.0), ..good }, true, "--error 1e-3"),
+    ];
+    for (question, has_scene, word) in cases {
+        let message = question.check(has_scene).expect_err("refused").to_string();
+        assert!(message.contains(word), "{question:?}: {message}");
+    }
+    assert!(good.check(true).is_ok());
+    let long = Question { duration_s: Some(1e6), rate_hz: Some(1e3), ..good };
+    assert!(advise(&selection("pendulum"), long).expect_err("refused").to_string().contains("shorten --for"));
+}
