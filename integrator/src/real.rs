@@ -105,36 +105,27 @@ pub(crate) fn taylor_cos_sinc<T: Real, const SKIP: usize>(x_squared: T) -> (T, T
     (polynomial(&COS[..COS.len() - SKIP], powers), polynomial(&SINC[..SINC.len() - SKIP], powers))
 }
 
-/// Statements, four times over.
-macro_rules! four_times {
-    ($($statement:tt)*) => { $($statement)* $($statement)* $($statement)* $($statement)* };
-}
-
 /// The same for larger x: k times halved, summed and doubled back by cos 2x = 1 - 2 x^2 sinc(x)^2, sinc 2x = sinc x cos x.
 ///
-/// The error is that of the angle, about 2 |x| EPSILON. Arithmetic alone, without a loop or a call: only then can the compiler
-/// see that it ends and has no effect, and drops it with an attitude that nobody asks for.
+/// The error is that of the angle, about 2 |x| EPSILON. Arithmetic in place, without a call: the compiler can see that it ends
+/// and has no effect, and drops it with an attitude that nobody asks for; and no register is saved for a call never made.
 #[cold]
-#[inline]
+#[inline(always)]
 pub(crate) fn doubled_cos_sinc<T: Real, const SKIP: usize>(x_squared: T, size: f64) -> (T, T) {
-    let mut halvings = halvings(size);
+    let halvings = halvings(size);
     let mut scaled = x_squared * T::lit(f64::from_bits((1023 - 2 * halvings) << 52));
     let (mut cosine, mut sinc) = taylor_cos_sinc::<T, SKIP>(scaled);
-    // 4^64 > 1e38: nobody turns by more in a step, and an infinite argument ends too.
-    four_times! { four_times! { four_times! {
-        if halvings == 0 {
-            return (cosine, sinc);
-        }
-        halvings -= 1;
+    for _ in 0..halvings {
         let half_sinc = sinc;
         sinc = half_sinc * cosine;
         cosine = T::lit(1.0) - scaled * half_sinc * half_sinc * T::lit(2.0);
         scaled *= T::lit(4.0);
-    } } }
+    }
     (cosine, sinc)
 }
 
-/// The least k <= 64 with size <= 4^k [`TAYLOR_BOUND`] = 2^(2 k - 4): k >= log2(size) / 2 + 2.
+/// The least k with size <= 4^k [`TAYLOR_BOUND`] = 2^(2 k - 4): k >= log2(size) / 2 + 2. At most 64, as 4^64 > 1e38: nobody
+/// turns by more in a step, and an infinite argument ends too.
 #[inline(always)]
 fn halvings(size: f64) -> u64 {
     let bits = size.to_bits();
