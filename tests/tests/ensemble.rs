@@ -50,7 +50,8 @@ fn a_lane_has_the_bits_of_its_member_alone_in_every_scene_and_method() {
         let scene = scenes::by_id(id).expect("a scene");
         let (members, end_s) = (drawn(id, MEMBERS), scene.scene().info().horizon_s);
         for method in IN_LANES {
-            let ends = [0..WIDTH, WIDTH..MEMBERS].map(|some| members.ends(some, method, end_s, STEPS).expect("in lanes"));
+            let ends =
+                [0..WIDTH, WIDTH..MEMBERS].map(|some| members.ends(some, method, end_s, STEPS).expect("in lanes"));
             let ends = ends.concat();
             assert_eq!(ends.len(), MEMBERS);
             for (i, end) in ends.iter().enumerate() {
@@ -78,7 +79,9 @@ where
         let v = (0..Q::Tangent::DIM).map(|i| state.v.component(i));
         q.chain(v).map(f64::to_bits).collect()
     };
-    let ends = starts.chunks(L::LANES).flat_map(|pack| run_pack::<L, M, Q>(model, pack, method, 1.75, STEPS).expect("in lanes"));
+    let ends = starts
+        .chunks(L::LANES)
+        .flat_map(|pack| run_pack::<L, M, Q>(model, pack, method, 1.75, STEPS).expect("in lanes"));
     ends.map(|end| end.map(numbers)).collect()
 }
 
@@ -94,7 +97,8 @@ where
     <M as Model<FusedEight>>::Config: Coordinates,
 {
     for method in IN_LANES {
-        let [plain, fused] = [packs::<f64, M, Q>(model, starts, method), packs::<Fused<f64>, M, Q>(model, starts, method)];
+        let [plain, fused] =
+            [packs::<f64, M, Q>(model, starts, method), packs::<Fused<f64>, M, Q>(model, starts, method)];
         assert_eq!(packs::<Eight, M, Q>(model, starts, method), plain, "{}", method.id());
         assert_eq!(packs::<FusedEight, M, Q>(model, starts, method), fused, "{} fused", method.id());
         assert_ne!(plain, fused, "{}: fusing has changed nothing", method.id());
@@ -249,7 +253,9 @@ fn the_reported_start_has_the_reported_error() {
 fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     let bytes = |threads: usize, count: usize, seed: u64| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| write_csv(&measure(&selection("torque-free-spin", &IN_LANES, &[32, 64]), count, seed)).expect("rows"))
+        pool.install(|| {
+            write_csv(&measure(&selection("torque-free-spin", &IN_LANES, &[32, 64]), count, seed)).expect("rows")
+        })
     };
     let alone = bytes(1, 70, 1);
     assert_eq!(bytes(2, 70, 1), alone);
@@ -354,5 +360,8 @@ fn directions_are_uniform_on_the_sphere() {
     }
     let n = DRAWS as f64;
     assert!((sum / n).abs().max() <= 5.0 * (1.0 / (3.0 * n)).sqrt(), "{sum}");
-    assert!((squares / n).add_scalar(-1.0 / 3.0).abs().max() <= 5.0 * ((1.0 / 5.0 - 1.0 / 9.0) / n).sqrt(), "{squares}");
+    assert!(
+        (squares / n).add_scalar(-1.0 / 3.0).abs().max() <= 5.0 * ((1.0 / 5.0 - 1.0 / 9.0) / n).sqrt(),
+        "{squares}"
+    );
 }

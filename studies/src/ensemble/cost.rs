@@ -85,7 +85,11 @@ fn measure(scene: &str, end_s: f64, members: &dyn Members, method: MethodId, bod
                 black_box(members.ends(i..i + WIDTH, method, end_s, steps));
             };
             let clock = Instant::now();
-            if threads > 1 { packs.par_iter().for_each(run) } else { packs.iter().for_each(run) }
+            if threads > 1 {
+                packs.par_iter().for_each(run)
+            } else {
+                packs.iter().for_each(run)
+            }
             *least = least.min(clock.elapsed().as_secs_f64());
         }
     }

@@ -39,13 +39,8 @@ pub trait Members: Send + Sync {
     fn alone(&self, member: usize) -> &dyn AnyScene;
     /// What is seen of some of them, at most eight, at the end of a run in lanes, `None` for one that left the finite numbers.
     /// The outer `None`: the method does not run in lanes.
-    fn ends(
-        &self,
-        members: Range<usize>,
-        method: MethodId,
-        end_s: f64,
-        steps: u64,
-    ) -> Option<Vec<Option<Observation>>>;
+    fn ends(&self, members: Range<usize>, method: MethodId, end_s: f64, steps: u64)
+    -> Option<Vec<Option<Observation>>>;
 }
 
 macro_rules! list {
@@ -134,7 +129,13 @@ macro_rules! members {
         fn alone(&self, member: usize) -> &dyn AnyScene {
             &self.members[member]
         }
-        fn ends(&self, members: Range<usize>, method: MethodId, end_s: f64, steps: u64) -> Option<Vec<Option<Observation>>> {
+        fn ends(
+            &self,
+            members: Range<usize>,
+            method: MethodId,
+            end_s: f64,
+            steps: u64,
+        ) -> Option<Vec<Option<Observation>>> {
             let $drawing = self;
             let law = $law;
             let ends = run_pack::<Eight, _, _>(&law, &self.starts[members], method, end_s, steps)?;
@@ -199,7 +200,8 @@ macro_rules! swung {
 swung!(Oscillator, DampedOscillator, ForcedOscillator);
 
 impl Drawn for Pendulum {
-    const RULE: &'static str = "the energy is kept, the angle uniform among those that it reaches; a swing goes either way";
+    const RULE: &'static str =
+        "the energy is kept, the angle uniform among those that it reaches; a swing goes either way";
     fn drawn(&self, random: &mut Generator) -> Self {
         // k^2 = sin^2(angle / 2) + (omega / (2 w0))^2 is the energy over 2 m g l.
         let double_w0 = 2.0 * (self.gravity / self.length).sqrt();

@@ -11,9 +11,10 @@ use std::ops::Range;
 use faer::fx128;
 use integrator::Real;
 use integrator::methods::MethodId;
-use reports::{Block, Claim, Figure};
+use reports::{Block, Claim, Figure, OutputDir};
 use serde::{Deserialize, Serialize};
 
+use crate::cli::Common;
 use crate::error::Error;
 use crate::observation::{Observation, Quantity};
 use crate::produce::{Product, from_rows};
@@ -124,15 +125,10 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64) -> Result<Pr
         );
         return Err(Error::Plan { place: place(), message });
     }
+    // A scene without a rule is left out among others; where nothing is left, it is said why.
     let known = with_a_rule();
-    match &selection.scenes[..] {
-        // One refused among many is left out; one that was asked for alone is answered.
-        scenes if scenes.iter().all(|scene| !known.contains(&scene.id())) => {
-            if let Some(scene) = scenes.first() {
-                draw(scene.as_ref(), 1, seed)?;
-            }
-        }
-        _ => {}
+    if let (Some(first), false) = (selection.scenes.first(), selection.scenes.iter().any(|s| known.contains(&s.id()))) {
+        draw(first.as_ref(), 1, seed)?;
     }
     if let Some(label) = &mut selection.progress.label {
         Ensemble::ID.clone_into(label);
@@ -143,6 +139,22 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64) -> Result<Pr
     product.files.push((name.clone(), cost.csv));
     product.section.blocks.push(Block::Table { caption: cost.caption.to_owned(), table: cost.table, csv: Some(name) });
     Ok(product)
+}
+
+/// [`ensemble`] as a program does it: writes the files, and returns the tables as text beside the claims.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run(common: &Common, count: usize, seed: u64) -> Result<(String, Vec<Claim>), Error> {
+    let mut selection = common.selection()?;
+    let out = OutputDir::create(common.out(Ensemble::ID))?;
+    let product = ensemble(&mut selection, count, seed)?;
+    out.write_all(&product.files)?;
+    let table = |block: &Block| match block {
+        Block::Table { caption, table, .. } => Some(format!("{caption}\n\n{}\n", table.to_text())),
+        _ => None,
+    };
+    Ok((product.section.blocks.iter().filter_map(table).collect(), product.claims))
 }
 
 /// A scene with its members and their exact motions.
@@ -191,7 +203,11 @@ pub fn measure(selection: &Selection, count: usize, seed: u64) -> Vec<Row> {
     let cost = |job: &Job<'_>| job.steps * u64::from(job.method.order());
     let done = in_parallel(&jobs, cost, &selection.progress, Job::errors);
     let errors = done.chunks(chunks.len()).map(<[_]>::concat);
-    sweeps.iter().zip(errors).flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e)).collect()
+    sweeps
+        .iter()
+        .zip(errors)
+        .flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e))
+        .collect()
 }
 
 fn steps(selection: &Selection, scene: &dyn AnyScene) -> Vec<u64> {
