@@ -182,6 +182,14 @@ impl<T: Real, const N: usize> Pack<T, N> {
     }
 }
 
+/// [`Real::cos_sinc`] of one fused number.
+#[inline(always)]
+fn fused_cos_sinc(x: f64) -> (f64, f64) {
+    let (cosine, sinc) =
+        if x <= TAYLOR_BOUND { taylor_cos_sinc::<_, 0>(Fused(x)) } else { doubled_cos_sinc::<_, 0>(Fused(x), x) };
+    (cosine.0, sinc.0)
+}
+
 impl<T: Lanes> Real for Fused<T> {
     #[inline(always)]
     fn lit(x: f64) -> Self {
@@ -209,14 +217,7 @@ impl<T: Lanes> Real for Fused<T> {
         if x_squared.0.all_at_most(TAYLOR_BOUND) {
             return taylor_cos_sinc::<_, 0>(x_squared);
         }
-        let (cosine, sinc) = x_squared.0.each_lane(|x| {
-            let (cosine, sinc) = if x <= TAYLOR_BOUND {
-                taylor_cos_sinc::<_, 0>(Fused(x))
-            } else {
-                doubled_cos_sinc::<_, 0>(Fused(x), x)
-            };
-            (cosine.0, sinc.0)
-        });
+        let (cosine, sinc) = x_squared.0.each_lane(fused_cos_sinc);
         (Fused(cosine), Fused(sinc))
     }
     #[inline(always)]

@@ -169,7 +169,7 @@ pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
 }
 
 /// Writes the files with plan and manifest, or of the files the charts alone.
-fn write(
+pub(crate) fn write(
     out: &OutputDir,
     common: &Common,
     mut files: Vec<(String, Vec<u8>)>,

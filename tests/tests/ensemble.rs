@@ -157,7 +157,7 @@ impl<T: Real> Model<T> for Runaway {
 #[test]
 fn a_member_that_fails_leaves_its_neighbours_their_bits() {
     let starts: Vec<_> = (0..MEMBERS)
-        .map(|i| State { q: Vector1::new(if i % 4 == 1 { 1e6 } else { 0.125 * i as f64 }), v: Vector1::new(0.0) })
+        .map(|i| State { q: Vector1::new(if i % 4 == 1 { 1e6 } else { 0.0625 * i as f64 }), v: Vector1::new(0.0) })
         .collect();
     for method in IN_LANES {
         let alone = packs::<f64, _, _>(&Runaway, &starts, method);
@@ -217,8 +217,8 @@ fn oscillator_errors_over_a_uniform_phase_are_distributed_as_a_cosine() {
 #[test]
 fn every_start_of_a_projectile_has_the_same_error() {
     let rows = measure(&selection("constant-force", &IN_LANES, &[64]), 100, 5);
-    let acceleration = Vector3::new(0.625, -0.3125, -12.1875).norm() / 1.25;
-    let expected: f64 = acceleration * 1.5 * (1.5 / 64.0) / 2.0;
+    let acceleration: f64 = Vector3::new(0.625, -0.3125, -12.1875).norm() / 1.25;
+    let expected = acceleration * 1.5 * (1.5 / 64.0) / 2.0;
     for method in [MethodId::ExplicitEuler, MethodId::SemiImplicitEuler] {
         let row = first(&rows, method, Quantity::Position);
         for error in [row.median, row.percentile_95, row.worst] {

@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 use studies::cli;
 use studies::tradeoff::Tradeoff;
-use studies::tradeoff::advice::{Question, ask};
+use studies::tradeoff::advice::{Flags, ask};
 
 fn main() -> ExitCode {
-    cli::asking::<Tradeoff, Question>(ask)
+    cli::asking::<Tradeoff, Flags>(ask)
 }

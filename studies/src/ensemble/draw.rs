@@ -3,9 +3,10 @@
 use std::any::Any;
 use std::ops::Range;
 
-use integrator::Model;
 use integrator::methods::MethodId;
+use integrator::pose::{Exponential, Pose, World};
 use integrator::rigid_body::{RigidBody, WorldOmega};
+use integrator::{Model, Space, State};
 use nalgebra::Vector3;
 
 use super::lanes::{Coordinates, Eight, run_pack};
@@ -54,8 +55,8 @@ macro_rules! list {
             let (id, mut random) = (scene.id(), Generator::new(seed));
             $($(
                 if let Some(law) = any.downcast_ref::<$scene>() {
-                    let members = (0..count).map(|_| $kind { id, scene: law.drawn(&mut random) }).collect();
-                    return Ok(Box::new(Drawing { law: law.clone(), members }));
+                    let members = (0..count).map(|_| $kind { id, scene: law.drawn(&mut random) });
+                    return Ok(Box::new(Drawing::new(law, members.collect())));
                 }
             )*)*
             Err(Error::Plan {
@@ -84,10 +85,64 @@ list! {
     Rigid(SphereTorque, SymmetricTop, TorqueFreeSpin, HeavyTop, BoxTumbling);
 }
 
+/// Where a scene starts, in what its model stores.
+trait Start {
+    type Config: Space;
+    fn start(&self) -> State<Self::Config>;
+}
+
+impl<S: Motion<f64>> Start for Particles<S> {
+    type Config = S::Config;
+    fn start(&self) -> State<S::Config> {
+        self.scene.exact(0.0)
+    }
+}
+
+impl<B: RigidMotion<f64>> Start for Rigid<B> {
+    type Config = Pose<f64, Exponential<World>, B::Position>;
+    fn start(&self) -> State<Self::Config> {
+        Motion::<f64>::exact(&WorldOmega::<&B>::new(&self.scene), 0.0)
+    }
+}
+
 /// The law that all share, and the members with their starts.
-struct Drawing<S, M> {
+struct Drawing<S, M: Start> {
     law: S,
     members: Vec<M>,
+    starts: Vec<State<M::Config>>,
+}
+
+impl<S: Clone, M: Start> Drawing<S, M> {
+    fn new(law: &S, members: Vec<M>) -> Self {
+        let starts = members.iter().map(M::start).collect();
+        Drawing { law: law.clone(), members, starts }
+    }
+}
+
+macro_rules! members {
+    ($rule:expr, |$drawing:ident| $law:expr) => {
+        fn rule(&self) -> &'static str {
+            $rule
+        }
+        fn count(&self) -> usize {
+            self.members.len()
+        }
+        fn alone(&self, member: usize) -> &dyn AnyScene {
+            &self.members[member]
+        }
+        fn ends(
+            &self,
+            members: Range<usize>,
+            method: MethodId,
+            end_s: f64,
+            steps: u64,
+        ) -> Option<Vec<Option<Observation>>> {
+            let $drawing = self;
+            let law = $law;
+            let ends = run_pack::<Eight, _, _>(&law, &self.starts[members], method, end_s, steps)?;
+            Some(ends.iter().map(|end| end.as_ref().map(|state| Motion::<f64>::observe(&law, state))).collect())
+        }
+    };
 }
 
 impl<S> Members for Drawing<S, Particles<S>>
@@ -96,56 +151,15 @@ where
     <S as Model<f64>>::Config: Coordinates + FlatSpace,
     <S as Model<Eight>>::Config: Coordinates,
 {
-    fn rule(&self) -> &'static str {
-        S::RULE
-    }
-    fn count(&self) -> usize {
-        self.members.len()
-    }
-    fn alone(&self, member: usize) -> &dyn AnyScene {
-        &self.members[member]
-    }
-    fn ends(
-        &self,
-        members: Range<usize>,
-        method: MethodId,
-        end_s: f64,
-        steps: u64,
-    ) -> Option<Vec<Option<Observation>>> {
-        let starts: Vec<_> =
-            self.members[members].iter().map(|member| Motion::<f64>::exact(&member.scene, 0.0)).collect();
-        let ends = run_pack::<Eight, _, _>(&self.law, &starts, method, end_s, steps)?;
-        Some(ends.iter().map(|end| end.as_ref().map(|state| Motion::<f64>::observe(&self.law, state))).collect())
-    }
+    members!(S::RULE, |drawing| drawing.law.clone());
 }
 
 impl<B> Members for Drawing<B, Rigid<B>>
 where
     B: Drawn + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMotion<faer::fx128> + RigidBody<Eight>,
 {
-    fn rule(&self) -> &'static str {
-        B::RULE
-    }
-    fn count(&self) -> usize {
-        self.members.len()
-    }
-    fn alone(&self, member: usize) -> &dyn AnyScene {
-        &self.members[member]
-    }
-    fn ends(
-        &self,
-        members: Range<usize>,
-        method: MethodId,
-        end_s: f64,
-        steps: u64,
-    ) -> Option<Vec<Option<Observation>>> {
-        // The world omega with the exponential map, as in every study that does not say otherwise.
-        let law = WorldOmega::<&B>::new(&self.law);
-        let start = |member: &Rigid<B>| Motion::<f64>::exact(&WorldOmega::<&B>::new(&member.scene), 0.0);
-        let starts: Vec<_> = self.members[members].iter().map(start).collect();
-        let ends = run_pack::<Eight, _, _>(&law, &starts, method, end_s, steps)?;
-        Some(ends.iter().map(|end| end.as_ref().map(|state| Motion::<f64>::observe(&law, state))).collect())
-    }
+    // The world omega with the exponential map, as in every study that does not say otherwise.
+    members!(B::RULE, |drawing| WorldOmega::<&B>::new(&drawing.law));
 }
 
 /// A vector of the same length in a direction uniform on the sphere.

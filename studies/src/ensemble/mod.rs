@@ -11,15 +11,17 @@ use std::ops::Range;
 use faer::fx128;
 use integrator::Real;
 use integrator::methods::MethodId;
-use reports::{Block, Claim, Figure};
+use reports::{Block, Claim, Figure, OutputDir};
 use serde::{Deserialize, Serialize};
 
-use crate::cli::Format;
+use crate::cli::{Common, Ending, Format};
 use crate::error::Error;
 use crate::observation::{Observation, Quantity};
-use crate::produce::{Product, from_rows};
+use crate::produce::{self, Judged, Product, from_rows};
+use crate::provenance::Manifest;
 use crate::run::Precision;
 use crate::scene::{AnyScene, ExpectedOrder};
+use crate::summary;
 use crate::study::{Derived, Selection, Study};
 use crate::sweep::in_parallel;
 use draw::{Members, draw, with_a_rule};
@@ -125,15 +127,10 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Form
         );
         return Err(Error::Plan { place: place(), message });
     }
+    // A scene without a rule is left out among others; where nothing is left, it is said why.
     let known = with_a_rule();
-    match &selection.scenes[..] {
-        // One refused among many is left out; one that was asked for alone is answered.
-        scenes if scenes.iter().all(|scene| !known.contains(&scene.id())) => {
-            if let Some(scene) = scenes.first() {
-                draw(scene.as_ref(), 1, seed)?;
-            }
-        }
-        _ => {}
+    if let (Some(first), false) = (selection.scenes.first(), selection.scenes.iter().any(|s| known.contains(&s.id()))) {
+        draw(first.as_ref(), 1, seed)?;
     }
     if let Some(label) = &mut selection.progress.label {
         Ensemble::ID.clone_into(label);
@@ -144,6 +141,35 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Form
     product.files.push((name.clone(), cost.csv.into_bytes()));
     product.section.blocks.push(Block::Table { caption: cost.caption.to_owned(), table: cost.table, csv: Some(name) });
     Ok(product)
+}
+
+/// [`ensemble`] as a program does it: writes the files, and prints the tables before the claims.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run(common: &Common, count: usize, seed: u64) -> Result<Ending, Error> {
+    if common.from.is_some() {
+        let message = "draws states and runs them; the rows of a directory have none to be drawn: leave --from out";
+        return Err(Error::plan("--ensemble", message));
+    }
+    let mut selection = common.selection()?;
+    let out = OutputDir::create(common.out(Ensemble::ID))?;
+    let Product { files, section, claims } = ensemble(&mut selection, count, seed, common.format)?;
+    let judged = Judged { claims, manifest: Manifest::of(&common.plan) };
+    produce::write(&out, common, files, &judged.manifest)?;
+    Ending::of(common, &judged, |claims| {
+        let tables: String = section.blocks.iter().flat_map(tables).collect();
+        format!("{tables}{}", summary::verdicts(claims))
+    })
+}
+
+/// The tables of a block, also of those within a group, as text.
+fn tables(block: &Block) -> Vec<String> {
+    match block {
+        Block::Table { caption, table, .. } => vec![format!("{caption}\n\n{}\n", table.to_text())],
+        Block::Group { blocks, .. } => blocks.iter().flat_map(tables).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// A scene with its members and their exact motions.

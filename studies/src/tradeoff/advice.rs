@@ -8,6 +8,7 @@ use super::search::{MOST_STEPS, Need, Search, Tried, attempt, search};
 use super::speak;
 use super::truth::Truth;
 use crate::cli::{Common, Ending};
+use crate::ensemble;
 use crate::error::Error;
 use crate::run::Precision;
 use crate::scene::AnyScene;
@@ -32,11 +33,29 @@ pub struct Question {
     pub rate_hz: Option<f64>,
 }
 
-/// The advice, where the flags ask for it.
-pub fn ask(common: &Common, question: &Question) -> Option<Result<Ending, Error>> {
-    (*question != Question::default()).then(|| {
+/// What can be asked besides the study.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "What to ask")]
+pub struct Flags {
+    #[command(flatten)]
+    question: Question,
+    /// Instead of one start, N starts drawn by each scene's rule: median, 95 % and worst error, into target/ensemble
+    #[arg(long, value_name = "N", conflicts_with_all = ["error", "budget_us", "duration_s", "rate_hz"])]
+    ensemble: Option<usize>,
+    /// Seed of the starts that --ensemble draws
+    #[arg(long, value_name = "S", default_value_t = 1, requires = "ensemble")]
+    seed: u64,
+}
+
+/// The ensemble or the advice, where the flags ask for it.
+pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
+    let question = flags.question;
+    if let Some(count) = flags.ensemble {
+        return Some(ensemble::run(common, count, flags.seed));
+    }
+    (question != Question::default()).then(|| {
         question.check(!common.plan.scene.is_empty())?;
-        let advice = advise(&common.selection()?, *question)?;
+        let advice = advise(&common.selection()?, question)?;
         Ok(Ending { text: advice.text, note: None, code: u8::from(!advice.possible) })
     })
 }

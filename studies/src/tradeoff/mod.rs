@@ -105,7 +105,8 @@ impl Study for Tradeoff {
         tradeoff --scene pendulum --error 1e-3                         the cheapest method, precision and step
         tradeoff --scene pendulum --budget-us 5                        the least error for 5 us of computing a simulated second
         tradeoff --scene tennis-racket --error 1e-3 --for 60 --rate 60 every method in a loop of 60 frames a second, for a minute
-        tradeoff --scene kepler --error 1e-3 --method semi-implicit-euler";
+        tradeoff --scene kepler --error 1e-3 --method semi-implicit-euler
+        tradeoff --ensemble 1000 --scene torque-free-spin              errors over many starts instead of one";
     const TITLE: &'static str = "What does accuracy cost? Work-precision";
     const INTRO: &'static str = "Every method, in three precisions and on rigid bodies with what is stored, is charged for its \
         error twice: in evaluations of the force law, which are counted and the same on every machine, and in time, which was \
