@@ -58,7 +58,7 @@ fn is_readable(name: &str, ready: &str) {
     let file = page(name);
     let mut browser = Chromium::start();
     for dark in [false, true] {
-        for width in [1200, 390] {
+        for width in [1200_u32, 390] {
             browser.open(&file, width, dark);
             browser.wait(ready);
             let place = format!("{name}, {width} px, dark {dark}");
@@ -68,7 +68,7 @@ fn is_readable(name: &str, ready: &str) {
             let faint = browser.value(&FAINT.replace("LIMIT", &CONTRAST.to_string()));
             assert_eq!(faint, json!({}), "{place}: contrast below {CONTRAST}");
             let wide = browser.value("document.documentElement.scrollWidth").as_u64().expect("a number");
-            assert!(wide <= width, "{place}: {wide} px wide, it scrolls sideways");
+            assert!(wide <= u64::from(width), "{place}: {wide} px wide, it scrolls sideways");
         }
     }
 }

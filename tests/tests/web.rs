@@ -186,8 +186,8 @@ fn selection() -> Selection {
         scenes: ["pendulum", "bouncing-ball", "torque-free-spin"].map(|id| scenes::by_id(id).expect("a scene")).into(),
         methods: MethodId::ALL.to_vec(),
         precisions: Precision::ALL.to_vec(),
-        // 2 steps of an oscillation fail some methods; 100 is no power of two.
-        steps: vec![2, 64, 100],
+        // With 2 steps some of the implicit ones are not solved.
+        steps: vec![2, 64],
         quick: true,
         progress: Progress::silent(),
     }
@@ -197,11 +197,10 @@ fn selection() -> Selection {
 #[test]
 fn the_module_recomputes_the_rows_of_the_report_bit_for_bit() {
     let rows = Convergence::measure(&selection());
-    let mut page = Page::open();
     let runs: Vec<&[Row]> =
         rows.chunk_by(|a, b| (&a.method, a.steps, a.precision) == (&b.method, b.steps, b.precision)).collect();
-    assert_eq!(runs.len(), 3 * 6 * 3 * 3);
-    for run in runs {
+    assert_eq!(runs.len(), 3 * 6 * 2 * 3);
+    runs.par_iter().with_max_len(1).for_each_init(Page::open, |page, run| {
         let Row { scene, method, steps, precision, .. } = &run[0];
         let question = format!(
             "errors\nscene {scene}\nmethod {method}\nsteps {steps}\nprecision {}\ncheckpoints true\nrounding true",
@@ -214,7 +213,7 @@ fn the_module_recomputes_the_rows_of_the_report_bit_for_bit() {
             [row.error_end, row.error_max, row.rounding_end, row.rounding_max].map(|x| x.unwrap_or(f64::NAN))
         };
         assert_eq!(bits(errors), bits(&run.iter().flat_map(of).collect::<Vec<_>>()), "{question}");
-    }
+    });
 }
 
 /// The numbers that the page holds are those of the CSV, every row of a scene of the page and no other.
@@ -267,7 +266,7 @@ fn the_rows_in_the_page_are_those_of_the_csv() {
         })
         .filter(|fields| fields[0] != "heavy-top")
         .collect();
-    assert_eq!(written.len(), 3 * 6 * 3 * 3 * 2);
+    assert_eq!(written.len(), 3 * 6 * 2 * 3 * 2);
     assert_eq!(shown, written);
     assert_eq!(data["set"][0], "x0=1");
     assert!(page.contains("&lt;all>"), "what the report says of itself is text");

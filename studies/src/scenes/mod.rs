@@ -57,17 +57,19 @@ macro_rules! list {
 
         /// Those of the teaching page. A module that asks for no others holds no others.
         pub fn taught() -> Vec<Box<dyn AnyScene>> {
-            let mut all: Vec<Box<dyn AnyScene>> = Vec::new();
-            $( if_taught!($($taught)?; all.push(Box::new($kind { id: $id, scene: $scene }))); )*
-            all
+            let all: [Option<Box<dyn AnyScene>>; IDS.len()] =
+                [$( if_taught!($($taught)?; Box::new($kind { id: $id, scene: $scene })) ),*];
+            all.into_iter().flatten().collect()
         }
     };
 }
 
 macro_rules! if_taught {
-    (; $($rest:tt)*) => {};
-    (taught; $then:expr) => {
-        $then
+    (; $scene:expr) => {
+        None
+    };
+    (taught; $scene:expr) => {
+        Some($scene)
     };
 }
 

@@ -27,7 +27,7 @@ function extent(exactValues, all, room = 0.08, most = 1.2) {
 function drawPicture(runs) {
   const [title, note] = PICTURE[scene.picture], truth = exact().points, svg = $("picture");
   $("picture-title").textContent = title;
-  $("picture-note").textContent = note;
+  $("picture-note").textContent = `${note}; grey: exact`;
   const far = runs.map(([m, r]) => `${nameOf(m)} ${r.outcome === "finished" ? "ends" : "fails"}`).join(", ");
   const name = `${title} of ${scene.title}: exact motion and ${far}; step ${short(view.h)} seconds`;
   const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.points, css: css(m), dots: view.steps <= 60 && scene.picture !== "sphere" }))];

@@ -51,7 +51,7 @@ const STOPS = [
       const r = v.radius("semi-implicit-euler");
       return `Now ωh = ${code(v.homega.toPrecision(4))}. One step of semi-implicit Euler stretches the worst direction by
         ${code(r.toPrecision(6))}${r > 1 + 1e-9 ? `, and ${code(v.steps)} of them by ${times(r ** v.steps)}: it is over the cliff.` : ": nothing grows yet, though the motion is nonsense."}
-        Press → once or twice. There is no warning before 2 and no mercy after it: the stiffest spring of a scene decides the step for all of it.`;
+        Press → on the slider, once or twice. There is no warning before 2 and no mercy after it: the stiffest spring of a scene decides the step for all of it.`;
     },
   },
   {
