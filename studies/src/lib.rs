@@ -41,8 +41,6 @@ pub mod ensemble;
 #[cfg(feature = "programs")]
 mod findings;
 #[cfg(feature = "programs")]
-mod reference;
-#[cfg(feature = "programs")]
 pub mod formulas;
 #[cfg(feature = "programs")]
 pub mod operations;
@@ -56,6 +54,8 @@ pub mod plan;
 pub mod produce;
 #[cfg(feature = "programs")]
 pub mod provenance;
+#[cfg(feature = "programs")]
+mod reference;
 #[cfg(feature = "programs")]
 pub mod rotation;
 #[cfg(feature = "programs")]
