@@ -110,8 +110,8 @@ proptest! {
                 prop_assert_eq!(rows[i].outcome, Outcome::Finished);
                 prop_assert!(rows[i].error.is_some_and(f64::is_finite) && charge.of(rows[i]).is_some());
             }
-            for j in 0..rows.len() {
-                if rows[j].scored().is_none() || charge.of(rows[j]).is_none() {
+            for (j, row) in rows.iter().enumerate() {
+                if row.scored().is_none() || charge.of(row).is_none() {
                     continue;
                 }
                 let (cost, error) = value(j);
