@@ -309,7 +309,7 @@ fn picture(rows: &[Row], id: &str) -> Option<Figure> {
         let points: Vec<[f64; 2]> = run.iter().filter_map(|row| Some([row.value?, row.measured?])).collect();
         // Where the run ends before its time, the reader must see that it does.
         let ends = |row: &&&Row| matches!(row.failure, Failure::NewtonNotConverging | Failure::FiniteTimeBlowUp);
-        let failed = points.last().filter(|_| run.iter().any(|row| ends(&row))).map(|[t, _]| *t).into_iter().collect();
+        let failed = points.last().filter(|_| run.iter().any(ends)).map(|[t, _]| *t).into_iter().collect();
         layers.push(if name == "exact" {
             // A series, so that the axis makes room for it.
             Layer::Series(Series { marker: None, line: Some(Line::Dashed), ..Series::new("exact", 7, points) })
