@@ -191,17 +191,21 @@ fn candidates() -> Vec<Candidate> {
 
 /// How much faster two threads do twice an ensemble's work than one: the best of many short rounds.
 fn gain_of_two_threads(work: fn() -> f64) -> f64 {
+    // A millisecond or more: a thread is started in a fiftieth of it, and a busy machine still leaves some rounds alone.
+    let start = Instant::now();
+    black_box(work());
+    let repeats = (1e-3 / start.elapsed().as_secs_f64()).ceil() as usize;
     let seconds = |threads: usize| {
         let start = Instant::now();
         std::thread::scope(|scope| {
             for _ in 0..threads {
-                scope.spawn(|| (0..20).for_each(|_| _ = black_box(work())));
+                scope.spawn(|| (0..repeats).for_each(|_| _ = black_box(work())));
             }
         });
         start.elapsed().as_secs_f64()
     };
     let mut least = [f64::INFINITY; 2];
-    for _ in 0..ROUNDS / 4 {
+    for _ in 0..ROUNDS {
         for threads in [1, 2] {
             least[threads - 1] = least[threads - 1].min(seconds(threads));
         }
