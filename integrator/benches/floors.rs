@@ -7,49 +7,19 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use integrator::lanes::{Fused, Pack};
+use integrator::lanes::Fused;
 use integrator::methods::{ExplicitEuler, Rk4, SemiImplicitEuler};
 use integrator::pose::{Fixed, Pose, Twist};
-use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, Torque, WorldOmega};
+use integrator::rigid_body::WorldOmega;
 use integrator::rotation::cross;
-use integrator::{Method, Model, Real, Rotation, State, Tangent, Vector, drive};
-use nalgebra::{Matrix3, Vector1, Vector3};
+use integrator::{Model, Rotation, State, Vector};
+use nalgebra::{Matrix3, Vector3};
 use wide::f64x4;
 
-const STEPS: u64 = 20_000;
+mod models;
+use models::{Free, Lanes, STEPS, go, inertia, spin, spring};
+
 const ROUNDS: usize = 200;
-
-/// x'' = -w^2 x.
-struct Spring<T> {
-    minus_w_squared: T,
-}
-
-impl<T: Real> Model<T> for Spring<T> {
-    type Config = Vector1<T>;
-    #[inline(always)]
-    fn rate(&self, _t: T, s: &State<Vector1<T>>) -> Vector1<T> {
-        s.q * self.minus_w_squared
-    }
-    #[inline(always)]
-    fn kick(&self, _t: T, h: T, s: &State<Vector1<T>>) -> Vector1<T> {
-        s.v.plus(s.q, self.minus_w_squared * h)
-    }
-}
-
-/// A free body.
-struct Free<T: Real>(Vector3<T>);
-
-impl<T: Real> RigidBody<T> for Free<T> {
-    type Position = Fixed<T>;
-    #[inline(always)]
-    fn inertia(&self) -> Vector3<T> {
-        self.0
-    }
-    #[inline(always)]
-    fn torque(&self, _t: T, _at: &Kinematics<T, Fixed<T>>) -> Torque<T> {
-        Torque::None
-    }
-}
 
 /// The world frame as textbooks print it: I_w = R I R^T and its inverse as matrices, omega' = I_w^-1 (-omega x I_w omega).
 struct Textbook(Vector3<f64>);
@@ -66,35 +36,9 @@ impl Model<f64> for Textbook {
     }
 }
 
-fn spring<T: Real>(seed: f64) -> (Spring<T>, State<Vector1<T>>) {
-    let start = State { q: Vector1::new(T::lit(black_box(seed))), v: Vector1::new(T::lit(black_box(0.25))) };
-    (Spring { minus_w_squared: T::lit(black_box(-2.25)) }, start)
-}
-
-type Spin<T> = State<<BodyOmega<Free<T>> as Model<T>>::Config>;
-
-fn inertia<T: Real>() -> Vector3<T> {
-    Vector3::new(T::lit(black_box(1.25)), T::lit(black_box(0.75)), T::lit(black_box(1.75)))
-}
-
-fn spin<T: Real>(seed: f64) -> (BodyOmega<Free<T>>, Spin<T>) {
-    let omega = Vector3::new(T::lit(black_box(seed)), T::lit(black_box(-0.75)), T::lit(black_box(1.0)));
-    let start =
-        State { q: Pose::new(Fixed::zero(), Rotation::identity()), v: Twist { linear: Fixed::zero(), angular: omega } };
-    (BodyOmega::new(Free(inertia())), start)
-}
-
 fn world(seed: f64) -> State<Pose<f64>> {
     let angular = Vector3::new(black_box(seed), black_box(-0.75), black_box(1.0));
     State { q: Pose::new(Vector3::zeros(), Rotation::identity()), v: Twist { linear: Vector3::zeros(), angular } }
-}
-
-fn go<T: Real, M: Model<T>, A: Method<T, M>>(method: &A, (model, start): (M, State<M::Config>)) -> T
-where
-    Tangent<M, T>: Vector<T>,
-{
-    let end = drive::advance(method, &model, start, T::lit(black_box(0.001)), STEPS);
-    end.map_or(T::lit(f64::NAN), |s| s.v.component(0))
 }
 
 fn fma_peak() -> f64x4 {
@@ -117,8 +61,6 @@ fn clock() -> f64 {
     }
     x as f64
 }
-
-type Lanes<const N: usize> = Pack<Fused<f64x4>, N>;
 
 struct Candidate {
     name: &'static str,
@@ -247,6 +189,30 @@ fn candidates() -> Vec<Candidate> {
     ]
 }
 
+/// How much faster two threads do twice an ensemble's work than one: the best of many short rounds.
+fn gain_of_two_threads(work: fn() -> f64) -> f64 {
+    // A millisecond or more: a thread is started in a fiftieth of it, and a busy machine still leaves some rounds alone.
+    let start = Instant::now();
+    black_box(work());
+    let repeats = (1e-3 / start.elapsed().as_secs_f64()).ceil() as usize;
+    let seconds = |threads: usize| {
+        let start = Instant::now();
+        std::thread::scope(|scope| {
+            for _ in 0..threads {
+                scope.spawn(|| (0..repeats).for_each(|_| _ = black_box(work())));
+            }
+        });
+        start.elapsed().as_secs_f64()
+    };
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..ROUNDS {
+        for threads in [1, 2] {
+            least[threads - 1] = least[threads - 1].min(seconds(threads));
+        }
+    }
+    2.0 * least[0] / least[1]
+}
+
 fn main() {
     let candidates = candidates();
     let mut ratios = vec![Vec::with_capacity(ROUNDS); candidates.len()];
@@ -286,5 +252,8 @@ fn main() {
             candidate.floor,
             sum
         );
+    }
+    for candidate in candidates.iter().filter(|candidate| candidate.lanes.0 == 24.0 || candidate.lanes.0 == 16.0) {
+        println!("two threads, {:<59} {:>8.2} times one", candidate.name, gain_of_two_threads(candidate.run));
     }
 }
