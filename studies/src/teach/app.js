@@ -54,8 +54,8 @@ function run(m, steps) {
   } else if (!scene.omega) {
     // The exact motion at the times of the looks; the end may lie between two.
     const stride = Math.ceil(steps / looks()), whole = Math.floor(steps / stride), q = scene.quantities[0];
-    const there = table(ask("exact", { scene: state.scene, set: settings(), end_s: (end_s * whole * stride) / steps, steps: whole })).rows;
-    result.fourth = rows.slice(1, whole + 1).map((r, k) => [r[1], norm(columns(r, q).map((x, i) => x - columns(there[k + 1], q)[i]))]);
+    view.there ??= table(ask("exact", { scene: state.scene, set: settings(), end_s: whole * stride * view.h, steps: whole })).rows;
+    result.fourth = rows.slice(1, whole + 1).map((r, k) => [r[1], norm(columns(r, q).map((x, i) => x - columns(view.there[k + 1], q)[i]))]);
   } else result.fourth = [];
   result.fourthLargest = largest(result.fourth.map(([, x]) => x).filter((x) => !Number.isNaN(x)));
   return result;
@@ -110,6 +110,7 @@ const view = {
 
 function look() {
   view.scene = scene;
+  view.there = null;
   // The run ends with a whole step, near the end of the picture.
   view.h = Math.max(state.h, scene.end / mostSteps());
   view.steps = stepsTo(scene.end, view.h);

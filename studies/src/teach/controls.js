@@ -23,8 +23,12 @@ function fill() {
   $("precision").value = state.precision;
   $("storage").value = state.storage;
   $("stored").hidden = !scene.rigid;
-  $("methods").innerHTML = "<legend>Methods</legend>" + entries().map((m) => `<label class="chip"><input type="checkbox" value="${m.id}"${state.methods.includes(m.id) ? " checked" : ""}><i class="swatch ${color(m)}"></i>${escaped(m.title)}</label>`).join("");
-  $("fields").innerHTML = scene.parameters.map((p) => `<label><span>${escaped(p.about.replace(/\.$/, ""))} <small>(${escaped(p.unit)})</small></span><input name="${p.name}" value="${escaped(state.set[p.name] ?? p.value)}" autocomplete="off" spellcheck="false"></label>`).join("");
+  const chip = (m) => `<label class="chip"><input type="checkbox" value="${m.id}"${state.methods.includes(m.id) ? " checked" : ""}>
+    <i class="swatch ${color(m)}"></i>${escaped(m.title)}</label>`;
+  $("methods").innerHTML = `<legend>Methods</legend>${entries().map(chip).join("")}`;
+  const field = (p) => `<label><span>${escaped(p.about.replace(/\.$/, ""))} <small>(${escaped(p.unit)})</small></span>
+    <input name="${p.name}" value="${escaped(state.set[p.name] ?? p.value)}" autocomplete="off" spellcheck="false"></label>`;
+  $("fields").innerHTML = scene.parameters.map(field).join("");
   $("refused").textContent = "";
 }
 

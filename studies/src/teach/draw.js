@@ -92,20 +92,25 @@ function drawFourth(runs) {
       name: `Stability: at omega h = ${view.homega.toPrecision(3)} one step stretches by ${at.map(([m, r]) => `${nameOf(m)} ${r.toPrecision(4)}`).join(", ")}; above one it grows`,
     });
   }
-  const spin = scene.balance("angular-momentum"), kept = spin && spin.conserved, unit = kept ? "|L| / |L₀| − 1" : "error (m)";
-  title.textContent = kept ? "Angular momentum" : "Distance from the exact motion";
-  note.textContent = kept ? "its length, in parts of the start" : "over the run";
-  const shown = runs.map(([m, r]) => [m, r.fourth.map(([t, x]) => [t, Math.max(x, 1e-17)])]);
-  const all = shown.flatMap(([, p]) => p.map((q) => q[1])).filter((x) => Number.isFinite(x));
-  const y = { from: 10 ** Math.floor(Math.log10(Math.min(1e-2, ...all)) - 0.01), to: 10 ** Math.ceil(Math.log10(Math.max(1, Math.min(1e3, largest(all))))), log: true, label: unit };
-  chart(svg, { x: time, y, series: shown.map(([m, points]) => ({ points, css: css(m) })), name: `${title.textContent}: largest ${runs.map(([m, r]) => `${nameOf(m)} ${inParts(r.fourthLargest)}`).join(", ")}` });
+  const spin = scene.balance("angular-momentum"), conserved = spin && spin.conserved;
+  title.textContent = conserved ? "Angular momentum" : "Distance from the exact motion";
+  note.textContent = conserved ? "its length, in parts of the start" : "over the run";
+  const series = runs.map(([m, r]) => ({ points: r.fourth.map(([t, x]) => [t, Math.max(x, 1e-17)]), css: css(m) }));
+  const all = series.flatMap(({ points }) => points.map((p) => p[1])).filter(Number.isFinite);
+  const from = 10 ** Math.floor(Math.log10(Math.min(1e-2, ...all)) - 0.01), top = Math.max(1, Math.min(1e3, largest(all)));
+  const y = { from, to: 10 ** Math.ceil(Math.log10(top)), log: true, label: conserved ? "|L| / |L₀| − 1" : "error (m)" };
+  const named = runs.map(([m, r]) => `${nameOf(m)} ${inParts(r.fourthLargest)}`).join(", ");
+  chart(svg, { x: time, y, series, name: `${title.textContent}: largest ${named}` });
 }
 
 function drawTable(runs) {
-  const q = scene.quantities[0];
-  $("cost-head").innerHTML = `<tr><th scope="col">Method</th><th scope="col" class="right">evaluations in ${scene.end}&nbsp;s</th><th scope="col" class="right">largest change of energy</th><th scope="col" class="right">error after ${scene.horizon_s}&nbsp;s (${q.unit})</th><th scope="col" class="right">for half the step</th><th scope="col">run</th></tr>`;
-  const most = largest(runs.map(([, r]) => r.evaluations)) || 1;
-  $("cost").innerHTML = runs.map(([m, r]) => `<tr><th scope="row"><i class="swatch ${css(m)}"></i>${escaped(m.title)}</th><td class="right"><i class="bar ${css(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}</td>
-    <td class="right">${inParts(r.energyChange)}</td><td class="right">${short(view.error(m))}</td><td class="right">${short(view.error(m, 2))}</td>
-    <td>${r.outcome === "finished" ? "finished" : `${r.outcome} at step ${r.failedStep}`}</td></tr>`).join("");
+  const q = scene.quantities[0], most = largest(runs.map(([, r]) => r.evaluations)) || 1;
+  const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, "for half the step"];
+  const head = (text) => `<th scope="col" class="right">${text}</th>`;
+  $("cost-head").innerHTML = `<tr><th scope="col">Method</th>${heads.map(head).join("")}<th scope="col">run</th></tr>`;
+  const bar = (m, r) => `<i class="bar ${css(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
+  const line = ([m, r]) => `<tr><th scope="row"><i class="swatch ${css(m)}"></i>${escaped(m.title)}</th>
+    ${[bar(m, r), inParts(r.energyChange), short(view.error(m)), short(view.error(m, 2))].map((cell) => `<td class="right">${cell}</td>`).join("")}
+    <td>${r.outcome === "finished" ? "finished" : `${r.outcome} at step ${r.failedStep}`}</td></tr>`;
+  $("cost").innerHTML = runs.map(line).join("");
 }

@@ -82,7 +82,10 @@ const STOPS = [
     title: "Your scene", question: "What step does a scene need?",
     set: { scene: "kepler/eccentric", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.02 },
     story(v) {
-      const one = (m) => { const need = v.needs(m, 0.01); return `${escaped(m.title)} ${need ? `h = ${code(short(need.h))} s and ${code(need.evaluations)} evaluations` : "a smaller step than any of the report's"}`; };
+      const one = (m) => {
+        const need = v.needs(m, 0.01), step = need && `h = ${code(short(need.h))} s and ${code(need.evaluations)} evaluations`;
+        return `${escaped(m.title)} ${step ?? "a smaller step than any of the report's"}`;
+      };
       const change = (m) => `${escaped(m.title)} ${code(short(v.runs[m.id].energyChange))}`;
       return `Ask for an error of 1 % of the distance after ${code(v.scene.horizon_s)} s, and the report answers: ${v.entries.map(one).join("; ")}. But that is
         before the planet passes its sun, and passing takes ${code(short(v.scene.time_scale_s))} s: your step is ${code(short(v.h / v.scene.time_scale_s))} of it. Over
