@@ -32,6 +32,12 @@ fn every_committed_bound_holds() {
     assert!(!judged.iter().any(|one| one.verdict() != reports::Verdict::Holds), "{}", check::report(&judged));
 }
 
+fn has_formula(scene: &str, method: &str) -> bool {
+    let scene = studies::scenes::by_id(scene).expect("a scene of the catalogue");
+    let stepper = Stepper::from_id(method, scene.as_ref()).expect("a method of the scene");
+    stepper.of_theory().is_some_and(|method| scene.scene().stability_limit(method).is_some())
+}
+
 // Fails if: a scene or a method is registered and has no bound.
 #[test]
 fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
@@ -44,7 +50,8 @@ fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
         match subject {
             Subject::Error(_) => assert!(has(Kind::ErrorAtStep), "{scene} {method} {}", subject.id()),
             Subject::Evaluations => assert!(has(Kind::EvaluationsPerStep), "{scene} {method}"),
-            Subject::Step => assert!(has(Kind::StabilityLimit), "{scene} {method}"),
+            // A limit of which no formula is known is not bounded; the audit lists it.
+            Subject::Step => assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}"),
             Subject::Balance(_) => {}
         }
     }
