@@ -74,6 +74,7 @@ fn fused_functions_are_those_of_plain_numbers() {
         let tolerance = (4.0 * x.sqrt() + 4.0) * f64::EPSILON;
         assert!((a - c).abs() <= tolerance && (b - d).abs() <= tolerance, "{x}: {a} {c}, {b} {d}");
         assert_eq!(Fused(x).sin_cos().0.0, Real::sin_cos(x).0);
+        assert_eq!((-Fused(x)).0.to_bits(), (-x).to_bits());
     }
 }
 
