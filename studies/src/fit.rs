@@ -97,7 +97,9 @@ mod tests {
         assert!(near(l.slope, 0.8) && near(l.intercept, 1.0), "{l:?}");
         assert!(near(l.slope_error, 0.12_f64.sqrt()) && near(l.rms, 0.72_f64.sqrt()), "{l:?}");
         assert_eq!(l.points, 5);
-        assert!((l.interval()[1] - (0.8 + 3.182_446 * 0.12_f64.sqrt())).abs() < 0.004, "{:?}", l.interval());
+        let half_width = 3.182_446 * 0.12_f64.sqrt();
+        let [low, high] = l.interval();
+        assert!((low - (0.8 - half_width)).abs() < 0.004 && (high - (0.8 + half_width)).abs() < 0.004, "{low} {high}");
     }
 
     #[test]

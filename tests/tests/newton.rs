@@ -201,3 +201,19 @@ fn implicit_midpoint_conserves_energy_and_momentum_of_a_free_body_to_rounding() 
     let other = worst_changes::<fx128, _>(&Rk4, 1000);
     assert!(other.iter().all(|x| *x > 1e-9), "{other:?}");
 }
+
+/// A linear step commutes with a scale that is a power of two, to the last bit: no size counts as zero before squares underflow.
+// Fails if: 1e-30 counts as zero in f64.
+#[test]
+fn small_numbers_are_solved_as_well_as_large_ones() {
+    let scale = 2.0_f64.powi(-150);
+    let start = |scale: f64| State { q: Vector1::new(0.75 * scale), v: Vector1::new(-1.25 * scale) };
+    for h in [0.015625, 16.0] {
+        let end = |scale: f64| {
+            [ImplicitEuler.step(&Unit, 0.0, h, start(scale)), ImplicitMidpoint.step(&Unit, 0.0, h, start(scale))]
+        };
+        for (large, small) in end(1.0).into_iter().zip(end(scale)) {
+            assert_eq!([large.q.x * scale, large.v.x * scale], [small.q.x, small.v.x], "h = {h}");
+        }
+    }
+}

@@ -101,6 +101,64 @@ fn a_law_that_changes_within_the_decade_is_not_averaged() {
     assert_eq!(law(|t| if t < 150.0 { 0.0 } else { t }), Law::Linear, "zeros before the growth");
 }
 
+/// t^p exp(q t / T) lies between both families. Over a decade its misfit ratio is 0.40 q / p, over the last quarter 0.55 q / p
+/// (the shapes of t against ln t and of ln t against t); between 1 / 1.5 and 1.5 there is no law, beyond there is one.
+#[test]
+fn a_family_must_fit_clearly_better_than_the_other() {
+    let between = |p: f64, q: f64| law(move |t| t.powf(p) * (q * t / 1000.0).exp());
+    assert_eq!(between(1.0, 2.4), Law::Unclassified, "the exponential ahead by 1.33 in the last quarter");
+    assert_eq!(between(1.0, 3.0), Law::Exponential, "by 1.66");
+    assert_eq!(between(0.3, 0.525), Law::Unclassified, "the power ahead by 1 / 0.70 over the decade");
+    assert_eq!(between(0.3, 0.42), Law::SqrtT, "by 1 / 0.56");
+}
+
+/// What fits next best is named as long as it fits less than three times worse.
+#[test]
+fn the_law_that_is_not_excluded_is_named() {
+    let alternative = |p: f64, q: f64| {
+        let g = classify(&run(|t| t.powf(p) * (q * t / 1000.0).exp()), 0.0);
+        (g.law, g.alternative)
+    };
+    assert_eq!(alternative(0.45, 1.35), (Law::Exponential, Some(Law::Linear)), "ahead by 1.66");
+    assert_eq!(alternative(0.0, 20.0), (Law::Exponential, None));
+    assert_eq!(alternative(0.3, 0.42), (Law::SqrtT, Some(Law::Exponential)), "ahead by 1 / 0.56");
+    assert_eq!(alternative(0.3, 0.525), (Law::Unclassified, Some(Law::SqrtT)), "the power fits better");
+    assert_eq!(alternative(0.0, 1.0), (Law::Unclassified, Some(Law::Exponential)), "the exponential fits better");
+    assert_eq!(alternative(0.0, 0.1), (Law::Bounded, None));
+    assert_eq!(alternative(1.0, 0.0), (Law::Linear, None));
+}
+
+/// An exponential is one from a rise by e over the stretch on: here 0.9 q over the decade.
+#[test]
+fn a_rise_by_less_than_e_is_not_called_exponential() {
+    assert_eq!(law(|t| (t / 1000.0).exp()), Law::Unclassified);
+    assert_eq!(law(|t| (1.2 * t / 1000.0).exp()), Law::Exponential);
+}
+
+/// exp(t^2) fits an exponential twice as well as a power, but its rate is not one rate.
+#[test]
+fn an_exponential_keeps_its_rate_in_both_halves() {
+    assert_eq!(law(|t| (10.0 * (t / 1000.0).powi(2)).exp()), Law::Unclassified);
+}
+
+/// The run does not stay where the exponential rise left it: what counts is its end.
+#[test]
+fn an_exponential_start_is_not_the_law_of_the_end() {
+    let g = classify(&run(|t| if t < 245.0 { 0.06 * ((t - 245.0) / 10.0).exp() } else { (t / 1000.0).powi(2) }), 0.0);
+    assert_eq!(g.law, Law::Quadratic, "{}", g.evidence);
+}
+
+/// Eight samples above the floor are enough, and the one before them has no part in the fit.
+#[test]
+fn the_last_sample_at_the_floor_is_not_fitted() {
+    let samples: Vec<Envelope> = (0..10)
+        .map(|k| 10.0_f64.powf(f64::from(k) / 9.0))
+        .map(|t_s| Envelope { t_s, error: if t_s < 1.5 { 1e-6 } else { t_s * t_s } })
+        .collect();
+    let g = classify(&samples, 1e-6);
+    assert_eq!(g.law, Law::Quadratic, "{}", g.evidence);
+}
+
 #[test]
 fn saturation_does_not_hide_exponential_growth() {
     let saturating = |r: f64| run(move |t| 1.0 / (1.0 + 1e8 * (-r * t).exp()));
