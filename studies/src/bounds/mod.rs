@@ -25,6 +25,7 @@ pub mod format;
 pub mod known;
 pub mod measure;
 pub mod mutants;
+pub mod program;
 pub mod propose;
 pub mod read;
 pub mod row;

@@ -68,11 +68,18 @@ pub struct NoFlags {}
 #[command(version, args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
 struct Cli<F: Args> {
     #[command(flatten)]
+    flags: F,
+    #[command(subcommand)]
+    aside: Option<Aside>,
+}
+
+/// The flags of a binary that runs studies.
+#[derive(Args)]
+struct Flags<F: Args> {
+    #[command(flatten)]
     common: Common,
     #[command(flatten)]
     own: F,
-    #[command(subcommand)]
-    aside: Option<Aside>,
 }
 
 /// What can be asked besides a run.
@@ -95,12 +102,12 @@ enum Aside {
 
 /// A binary that runs one study.
 pub fn main<S: Study>() -> ExitCode {
-    start(Words::of::<S>(), |common, _: &NoFlags| run::<S>(common))
+    of_studies(Words::of::<S>(), |common, _: &NoFlags| run::<S>(common))
 }
 
 /// A binary that runs one study, or answers a question put by its own flags: where `ask` gives `None`, it is the study.
 pub fn asking<S: Study, F: Args>(ask: impl Fn(&Common, &F) -> Option<Result<Ending, Error>>) -> ExitCode {
-    start(Words::of::<S>(), |common, own: &F| ask(common, own).unwrap_or_else(|| run::<S>(common)))
+    of_studies(Words::of::<S>(), |common, own: &F| ask(common, own).unwrap_or_else(|| run::<S>(common)))
 }
 
 /// The binary of the whole report.
@@ -115,7 +122,7 @@ pub fn report() -> ExitCode {
             report --quick --markdown > comment.md
             report list heavy-top",
     };
-    start(words, |common, _: &NoFlags| {
+    of_studies(words, |common, _: &NoFlags| {
         let ending = Ending::of(common, &produce::report(common)?, summary::summary)?;
         let (out, page) = (common.out(REPORT), "index.html");
         let written = if common.figures_only { out } else { out.join(page) };
@@ -127,18 +134,24 @@ fn run<S: Study>(common: &Common) -> Result<Ending, Error> {
     Ending::of(common, &study::<S>(common)?, summary::verdicts)
 }
 
+fn of_studies<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending, Error>) -> ExitCode {
+    start(words, |Flags { common, own }: Flags<F>| {
+        let common = common.with_plan_file()?;
+        let ending = run(&common, &own)?;
+        Ok(Ending { note: ending.note.filter(|_| !common.quiet), ..ending })
+    })
+}
+
 /// Reads the flags, does what they ask for and ends: 0 all is well, 1 a claim is broken, 2 the input or the output was wrong,
 /// 130 interrupted.
-pub fn start<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending, Error>) -> ExitCode {
+pub fn start<F: Args>(words: Words, run: impl Fn(F) -> Result<Ending, Error>) -> ExitCode {
     let arguments: Vec<String> = std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect();
     color::choose(&arguments);
     // Ctrl-C lets files that are being put in their places arrive. Without a handler it would still end the program.
     let _ = ctrlc::set_handler(|| reports::files::when_written(|| std::process::exit(130)));
-    let ended = perform(&words, &run).and_then(|(ending, quiet)| {
+    let ended = perform(&words, run).and_then(|ending| {
         print(&ending.text)?;
-        if let (false, Some(text)) = (quiet, &ending.note) {
-            note(text);
-        }
+        ending.note.as_deref().map(note);
         Ok(ending.code)
     });
     ended.map_or_else(
@@ -150,11 +163,8 @@ pub fn start<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending, 
     )
 }
 
-fn perform<F: Args>(
-    words: &Words,
-    run: impl Fn(&Common, &F) -> Result<Ending, Error>,
-) -> Result<(Ending, bool), Error> {
-    let said = |text| Ok((Ending { text, note: None, code: 0 }, true));
+fn perform<F: Args>(words: &Words, run: impl Fn(F) -> Result<Ending, Error>) -> Result<Ending, Error> {
+    let said = |text| Ok(Ending { text, note: None, code: 0 });
     let parsed = command::<F>(words).try_get_matches().and_then(|matches| Cli::<F>::from_arg_matches(&matches));
     match parsed {
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
@@ -166,10 +176,7 @@ fn perform<F: Args>(
             said(completions(named::<F>(words), words.name, shell))
         }
         Ok(Cli { aside: Some(Aside::Man), .. }) => said(manual(named::<F>(words))?),
-        Ok(Cli { common, own, .. }) => {
-            let common = common.with_plan_file()?;
-            run(&common, &own).map(|ending| (ending, common.quiet))
-        }
+        Ok(Cli { flags, .. }) => run(flags),
     }
 }
 
@@ -194,6 +201,9 @@ fn named<F: Args>(words: &Words) -> Command {
     let list =
         [("scene", Names::new(scenes::IDS)), ("method", Names::new(methods)), ("precision", Names::new(precisions))];
     list.into_iter().fold(command::<F>(words), |command, (flag, names)| {
+        if !command.get_arguments().any(|arg| arg.get_id() == flag) {
+            return command;
+        }
         command.mut_arg(flag, |arg| arg.value_parser(names).hide_possible_values(true))
     })
 }

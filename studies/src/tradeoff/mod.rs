@@ -13,6 +13,7 @@ mod figures;
 pub mod front;
 pub mod iso;
 pub mod limit;
+mod peers;
 pub mod runs;
 pub mod search;
 mod speak;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::candidate::Candidate;
 use super::front::front;
 use super::iso::{LEVELS, Price, prices};
-use super::{Charge, Part, Row, cost_tables, duel_tables, ucurve};
+use super::{Charge, Part, Row, cost_tables, duel_tables, peers, ucurve};
 use crate::error::Error;
 use crate::run::Precision;
 use crate::study::{Derived, distinct, short};
@@ -23,6 +23,7 @@ pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
     tables.extend([iso(rows)?, fronts(rows)?, ucurve::table(rows)?]);
     tables.extend(vanish(rows)?);
     tables.extend(cost_tables::all(rows)?);
+    tables.extend(peers::table(rows)?);
     Ok(tables)
 }
 
