@@ -86,9 +86,9 @@ fn measure(scene: &str, end_s: f64, members: &dyn Members, method: MethodId, bod
             };
             let clock = Instant::now();
             if threads > 1 {
-                packs.par_iter().for_each(run)
+                packs.par_iter().for_each(run);
             } else {
-                packs.iter().for_each(run)
+                packs.iter().for_each(run);
             }
             *least = least.min(clock.elapsed().as_secs_f64());
         }
