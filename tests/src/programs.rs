@@ -68,6 +68,24 @@ pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     entries.map(|path| (name(&path), fs::read(path).expect("readable"))).collect()
 }
 
+/// What is the same in two runs of one plan: neither the files with times in them, those of the tradeoff study but for its
+/// claims, nor that study's section of the page.
+///
+/// # Panics
+/// If the section has no end.
+pub fn untimed(mut files: BTreeMap<String, Vec<u8>>) -> BTreeMap<String, Vec<u8>> {
+    let timed = |name: &str| name.starts_with("tradeoff") || name.starts_with("work-time");
+    files.retain(|name, _| name == "tradeoff-claims.csv" || !timed(name));
+    if let Some(page) = files.get_mut("index.html") {
+        let content = text(page);
+        if let Some(start) = content.find("<section id=\"tradeoff\"") {
+            let length = content[start..].find("</section>").expect("a section ends");
+            *page = format!("{}{}", &content[..start], &content[start + length..]).into_bytes();
+        }
+    }
+    files
+}
+
 /// The same files, byte for byte.
 ///
 /// # Panics

@@ -298,13 +298,13 @@ fn a_malformed_file_is_refused_with_file_line_and_column() {
     assert!(Bounds::parse(file(GOOD).as_bytes(), "b.csv").is_ok());
     for (from, to, at, says) in [
         ("oscillator", "oscilator", "3:1", "did you mean 'oscillator'"),
-        ("rk4", "rk5", "3:2", "unknown method 'rk5'"),
-        ("rk4", "rk4/body-omega", "3:2", "unknown method"),
-        ("f64", "f16", "3:3", "unknown precision 'f16'"),
+        ("rk4", "rk5", "3:2", "method 'rk5': unknown"),
+        ("rk4", "rk4/body-omega", "3:2", "method 'rk4/body-omega': unknown"),
+        ("f64", "f16", "3:3", "precision 'f16': unknown"),
         ("position", "attitude", "3:4", "oscillator has no attitude: no run matches"),
-        ("position", "weight", "3:4", "unknown quantity 'weight'"),
+        ("position", "weight", "3:4", "quantity 'weight': unknown"),
         ("error-at-step", "drift", "3:4", "position has no drift"),
-        ("error-at-step", "errors", "3:5", "unknown kind 'errors'"),
+        ("error-at-step", "errors", "3:5", "kind 'errors': unknown"),
         (",64,", ",0,", "3:6", "0: give 1 to"),
         (",64,", ",-64,", "3:6", "'-64' is not a number of steps"),
         (",64,", ",99999999,", "3:6", "99999999: give 1 to"),
@@ -321,7 +321,7 @@ fn a_malformed_file_is_refused_with_file_line_and_column() {
         ("1.0", "2.5", "3:11", "it never held"),
         ("1.0", "nan", "3:11", "nan is no bound"),
         ("measured x 2: a test", "", "3:12", "give 'theory:"),
-        ("one-step-short", "gremlins", "3:13", "unknown mutant 'gremlins'"),
+        ("one-step-short", "gremlins", "3:13", "mutant 'gremlins': unknown"),
         (",one-step-short", "", "3:13", "12 fields where the header has 13"),
         ("one-step-short", "one-step-short,more", "3:13", "14 fields where the header has 13"),
     ] {

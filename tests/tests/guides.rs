@@ -9,7 +9,7 @@ use verification::programs::{directory, text};
 /// Commands that are not run here, and why.
 const NOT_RUN: [(&str, &str); 4] = [
     (
-        "cargo run --release                      # the whole report, into target/report/index.html",
+        "cargo run --release                      # the whole report, into target/report/: index.html, and teach.html to play with",
         "it takes half a minute; .ci/run runs it",
     ),
     ("cargo test --release --workspace         # every law, order, oracle and published number", "it is this test"),
@@ -86,6 +86,11 @@ fn run(document: &Path) {
     let cargo = tools.join("cargo");
     fs::write(&cargo, CARGO).expect("writable");
     assert!(Command::new("chmod").arg("+x").arg(&cargo).status().is_ok_and(|status| status.success()));
+    // What a guide takes from the root of the workspace.
+    let data = temporary.path().join("tests/data");
+    fs::create_dir_all(&data).expect("writable");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
+    fs::copy(root.join("tests/data/bounds.csv"), data.join("bounds.csv")).expect("it is committed");
     let path = format!("{}:{}", tools.display(), std::env::var("PATH").unwrap_or_default());
     for Example { place, commands, shown } in examples(document) {
         let kept = commands.lines().filter(|line| !NOT_RUN.iter().any(|(not, _)| not == line));

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use verification::programs::{assert_same, files, program, run};
+use verification::programs::{assert_same, files, program, run, untimed};
 
 /// A run without an end that could be waited for.
 const ENDLESS: [&str; 5] = ["--scene", "kepler", "--steps", "1000000000000", "--quiet"];
@@ -19,7 +19,7 @@ fn start(arguments: &[&str], out: &Path) -> Child {
 
 /// The files of a report; what was being written beside its place is hidden and is no part of it.
 fn visible(directory: &Path) -> BTreeMap<String, Vec<u8>> {
-    files(directory).into_iter().filter(|(name, _)| !name.starts_with('.')).collect()
+    untimed(files(directory)).into_iter().filter(|(name, _)| !name.starts_with('.')).collect()
 }
 
 // Fails if: Ctrl-C has another exit code, or anything is written before all is known.

@@ -1,11 +1,10 @@
 //! The binaries as a user meets them: exit codes, messages, files. Numbers are other tests' business.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use verification::programs::{PROGRAMS, assert_same, files, program, run, text};
+use verification::programs::{PROGRAMS, assert_same, files, program, run, text, untimed};
 
 const SMALL: [&str; 3] = ["--quick", "--scene", "oscillator"];
 
@@ -31,20 +30,6 @@ fn output_is_the_same_bytes_with_one_thread_and_with_two() {
     let (one, two) = (files(one.path()), files(two.path()));
     assert!(one.len() > 5);
     assert_same(&untimed(one), &untimed(two));
-}
-
-/// What is the same twice: neither the files with times in them, those of the tradeoff study but for its claims, nor that
-/// study's section of the page.
-fn untimed(mut files: BTreeMap<String, Vec<u8>>) -> BTreeMap<String, Vec<u8>> {
-    let timed = |name: &str| name.starts_with("tradeoff") || name.starts_with("work-time");
-    files.retain(|name, _| name == "tradeoff-claims.csv" || !timed(name));
-    for page in files.iter_mut().filter(|(name, _)| name.ends_with(".html")).map(|(_, bytes)| bytes) {
-        let content = text(page);
-        let start = content.find("<section id=\"tradeoff\"").expect("the section of the study");
-        let length = content[start..].find("</section>").expect("a section ends");
-        *page = format!("{}{}", &content[..start], &content[start + length..]).into_bytes();
-    }
-    files
 }
 
 // Fails if: an error is reported with another exit code, or without the word that helps.
@@ -130,7 +115,7 @@ fn nothing_but_notes_goes_to_stderr_when_piped() {
 
 #[test]
 fn help_shows_examples() {
-    for binary in PROGRAMS {
+    for binary in PROGRAMS.into_iter().chain(["bounds"]) {
         let output = program(binary).arg("--help").output().expect("the binary was built");
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stdout).contains("Examples:"), "{binary}");

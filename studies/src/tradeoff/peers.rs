@@ -36,9 +36,7 @@ struct Line {
 /// Who is the fastest at which error, on those of the chosen scenes that were compared.
 pub(super) fn table(rows: &[Row]) -> Result<Option<Derived>, Error> {
     let lines: Vec<Line> = reports::read_csv(CSV, "data/peers.csv")?;
-    let asked = |line: &Line| {
-        line.comparison == "time-to-accuracy" && rows.iter().any(|row| row.scene == line.scene)
-    };
+    let asked = |line: &Line| line.comparison == "time-to-accuracy" && rows.iter().any(|row| row.scene == line.scene);
     let mut best: Vec<Line> = Vec::new();
     for line in lines.into_iter().filter(asked) {
         match best.iter_mut().find(|known| same_question(known, &line) && known.system == line.system) {
@@ -66,7 +64,12 @@ pub(super) fn table(rows: &[Row]) -> Result<Option<Derived>, Error> {
             short(question.asked_error),
             short(Some(question.horizon_s)),
             leader.map_or_else(String::new, |line| line.system.clone()),
-            format!("{}, {}, {} ns/s", question.method, question.setting, short(Some(question.ns_per_simulated_second))),
+            format!(
+                "{}, {}, {} ns/s",
+                question.method,
+                question.setting,
+                short(Some(question.ns_per_simulated_second))
+            ),
         ];
         cells.extend(systems.iter().filter(|system| *system != OURS).map(times));
         table.push(cells);
