@@ -92,21 +92,27 @@ impl Source {
         from_rows::<S>(&self.rows::<S>()?, self.format)
     }
 
-    /// Every study of the report, in its order.
+    /// Every study of the report, in its order: measured one after the other, each on all cores, and then drawn and judged
+    /// side by side.
     ///
     /// # Errors
     /// As [`Self::product`].
     pub fn all(&mut self) -> Result<Vec<Product>, Error> {
-        Ok(vec![
-            self.product::<Convergence>()?,
-            self.product::<DriftStudy>()?,
-            self.product::<Rotation>()?,
-            self.product::<Adequacy>()?,
-            self.product::<Stability>()?,
-            self.product::<Tradeoff>()?,
-        ])
+        let format = self.format;
+        let mut made: Vec<Making> = Vec::new();
+        macro_rules! measure {
+            ($($study:ty),*) => {$(
+                let rows = self.rows::<$study>()?;
+                made.push(Box::new(move || from_rows::<$study>(&rows, format)));
+            )*};
+        }
+        measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Tradeoff);
+        made.into_par_iter().map(|make| make()).collect()
     }
 }
+
+/// What follows from the rows of one study, still to be made.
+type Making = Box<dyn FnOnce() -> Result<Product, Error> + Send>;
 
 /// All that follows from the rows of a study, without running anything.
 ///

@@ -3,24 +3,17 @@
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::OnceLock;
+
+use verification::programs::{PROGRAMS, run};
 
 /// The directory of a small report: a particle and a rigid body.
 fn report() -> &'static Path {
     static REPORT: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
     let (_, path) = REPORT.get_or_init(|| {
         let out = tempfile::tempdir().expect("a temporary directory");
-        let test = std::env::current_exe().expect("a test knows its own path");
-        let profile = test.parent().and_then(Path::parent).and_then(Path::file_name).and_then(|name| name.to_str());
-        let profile = if profile == Some("debug") { "dev" } else { profile.expect("target/<profile>/deps/<test>") };
-        let status = Command::new(env!("CARGO"))
-            .args(["run", "--quiet", "--package", "studies", "--bin", "report", "--profile", profile, "--"])
-            .args(["--quick", "--quiet", "--scene", "oscillator", "--scene", "torque-free-spin", "--out"])
-            .arg(out.path())
-            .stdout(Stdio::null())
-            .status();
-        assert!(status.expect("cargo").success());
+        let flags = ["--quick", "--quiet", "--scene", "oscillator", "--scene", "torque-free-spin"];
+        assert!(run("report", &flags, out.path()).status.success());
         let path = out.path().to_owned();
         (out, path)
     });
@@ -62,7 +55,7 @@ fn every_claim_on_the_page_is_the_line_of_its_csv() {
         .map(|row| (words(row.split('"').next().expect("an id")), cells(row)))
         .collect();
     let mut count = 0;
-    for study in ["convergence", "drift", "rotation", "adequacy", "stability"] {
+    for study in PROGRAMS.into_iter().filter(|name| *name != "report") {
         for claim in csv(&format!("{study}-claims.csv")) {
             let row = shown.get(&claim["id"]).unwrap_or_else(|| panic!("{} is not on the page", claim["id"]));
             let verdict = row[4].split_once(' ').expect("a sign and a word").1.replace(' ', "_");

@@ -70,7 +70,7 @@ pub struct Flags {
     audit: bool,
 
     /// Hold the built-in wrong methods to the rows that name them
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["quick", "scene", "method"])]
     mutants: bool,
 
     /// Threads to run on [default: all cores]

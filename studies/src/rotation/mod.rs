@@ -45,10 +45,12 @@ impl Study for Rotation {
         let schemes: Vec<Scheme> = Scheme::all().into_iter().filter(|s| asked_for(selection, *s)).collect();
         let mut rows = orders::measure(selection, &schemes);
         rows.extend(on_free_bodies(selection, &schemes));
-        let scenes =
-            selection.scenes.iter().map(AsRef::as_ref).filter(|scene: &&dyn AnyScene| orders::is_rigid(*scene));
-        rows.extend(scenes.flat_map(same_motions));
-        rows.extend(printed());
+        let scenes: Vec<&dyn AnyScene> =
+            selection.scenes.iter().map(AsRef::as_ref).filter(|scene| orders::is_rigid(*scene)).collect();
+        let same = || in_parallel(&scenes, |_| 1, &selection.progress, |scene| same_motions(*scene));
+        let (same, printed) = rayon::join(same, printed);
+        rows.extend(same.into_iter().flatten());
+        rows.extend(printed);
         rows
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {

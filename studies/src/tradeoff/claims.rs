@@ -4,12 +4,15 @@ use integrator::methods::MethodId;
 use reports::{Claim, Verdict};
 
 use super::candidate::Candidate;
+use super::duel_tables::question_row;
 use super::ucurve::{Minimum, minima};
-use super::{Part, Row};
+use super::verdict::duels;
+use super::{Charge, Part, Row};
 use crate::study::{distinct, short};
 
 pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
     let mut claims = evaluations(rows);
+    claims.extend(question(rows));
     claims.extend(rows.iter().filter(|row| row.part == Part::Vanish).map(vanish));
     claims.extend(minima(rows).iter().filter(|minimum| is_judged(minimum)).flat_map(u_curve));
     claims
@@ -36,6 +39,25 @@ fn evaluations(rows: &[Row]) -> Vec<Claim> {
         Some(claim(&format!("evaluations.{method}"), texts, wrong == 0))
     };
     distinct(runs.iter().map(|row| row.method.clone())).into_iter().filter_map(one).collect()
+}
+
+/// The error at which the question is put: a centimetre, or half a degree.
+const QUESTION: f64 = 1e-2;
+/// On fewer scenes 'most' says nothing.
+const MANY: usize = 10;
+
+/// Whether RK4 is worth its four evaluations: to an error E an order p needs about E^(-1/p) of them.
+fn question(rows: &[Row]) -> Option<Claim> {
+    let line = question_row(&duels(rows, Charge::Evaluations), QUESTION, Charge::Evaluations);
+    let price = line.median_rk4_over_semi_implicit.filter(|_| line.scenes >= MANY)?;
+    let cheaper = line.scenes - line.semi_implicit_beats_rk4;
+    let texts = [
+        format!("at an error of {QUESTION} RK4 costs fewer evaluations than semi-implicit Euler on most scenes"),
+        "evaluations to an error E grow as E^(-1/p), with p = 1 and 4".to_owned(),
+        format!("{} of {}; {price:.2} of its price at the median", cheaper, line.scenes),
+        "more than half the scenes".to_owned(),
+    ];
+    Some(claim("semi-implicit-or-rk4", texts, 2 * cheaper > line.scenes && price < 1.0))
 }
 
 /// Roundings on the way to the first increment: of h, of g h and of g h^2, each of eps / 2, and the width of the bracket.

@@ -13,15 +13,15 @@ use crate::run::Precision;
 use crate::study::{Derived, short};
 
 #[derive(Serialize)]
-struct QuestionRow {
-    error_level: f64,
-    charge: Charge,
-    scenes: usize,
-    semi_implicit_is_best_or_level: usize,
-    semi_implicit_beats_rk4: usize,
-    median_rk4_over_semi_implicit: Option<f64>,
-    semi_implicit_beats_implicit_euler: usize,
-    median_implicit_euler_over_semi_implicit: Option<f64>,
+pub(super) struct QuestionRow {
+    pub(super) error_level: f64,
+    pub(super) charge: Charge,
+    pub(super) scenes: usize,
+    pub(super) semi_implicit_is_best_or_level: usize,
+    pub(super) semi_implicit_beats_rk4: usize,
+    pub(super) median_rk4_over_semi_implicit: Option<f64>,
+    pub(super) semi_implicit_beats_implicit_euler: usize,
+    pub(super) median_implicit_euler_over_semi_implicit: Option<f64>,
 }
 
 /// How often semi-implicit Euler is the best buy.
@@ -29,10 +29,7 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     let mut lines = Vec::new();
     for charge in Charge::ALL {
         let all = duels(rows, charge);
-        for level in LEVELS {
-            let reached: Vec<&Duel> = all.iter().filter(|duel| duel.level == level && duel.best.is_some()).collect();
-            lines.push(question_row(&reached, level, charge));
-        }
+        lines.extend(LEVELS.map(|level| question_row(&all, level, charge)));
     }
     let [a, b, c, d, e] =
         ["scenes", "best buy, or level", "cheaper than RK4", "RK4 costs, median", "cheaper than implicit Euler"];
@@ -57,7 +54,9 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     })
 }
 
-fn question_row(duels: &[&Duel], error_level: f64, charge: Charge) -> QuestionRow {
+/// The same at one error, over the scenes on which it was reached.
+pub(super) fn question_row(duels: &[Duel], error_level: f64, charge: Charge) -> QuestionRow {
+    let duels: Vec<&Duel> = duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
     // A method that never reaches the level is beaten by any factor.
     let over = |of: fn(&Duel) -> &Offer| -> Vec<f64> {
         let one = |duel: &&Duel| match (factor(of(duel), &duel.semi_implicit), &duel.semi_implicit) {
