@@ -1,4 +1,4 @@
-//! Where a report comes from. It is kept apart from the tables and charts, which are the same bytes for the same plan.
+//! Where a report comes from. It is kept apart from the tables and charts, which are the same bytes for the same plan, but for times.
 
 use std::path::Path;
 

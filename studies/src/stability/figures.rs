@@ -290,7 +290,7 @@ fn about(id: &str) -> Option<(&'static str, &'static str, &'static str, &'static
             true,
         ),
         "drift" => (
-            "Drift: energy leaks away while angular momentum is kept",
+            "Drift: the energy changes for good while |L| is kept",
             "|L| is kept to rounding and nothing looks wrong, while the body slowly turns to another axis and its energy moves with it.",
             "torque-free-spin",
             "kinetic energy over its start (1)",

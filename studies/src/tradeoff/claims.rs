@@ -54,7 +54,7 @@ fn question(rows: &[Row]) -> Option<Claim> {
     let texts = [
         format!("at an error of {QUESTION} RK4 costs fewer evaluations than semi-implicit Euler on most scenes"),
         "evaluations to an error E grow as E^(-1/p), with p = 1 and 4".to_owned(),
-        format!("{} of {}; {price:.2} of its price at the median", cheaper, line.scenes),
+        format!("{cheaper} of {}; {price:.2} times as many at the median", line.scenes),
         "more than half the scenes".to_owned(),
     ];
     Some(claim("semi-implicit-or-rk4", texts, 2 * cheaper > line.scenes && price < 1.0))
@@ -72,8 +72,8 @@ fn vanish(row: &Row) -> Claim {
             "a body at rest at {height} m begins to fall only with a step above sqrt(ulp / 2g), in {}",
             row.precision.id()
         ),
-        format!("{theory:.9} s"),
-        format!("between {low:.9} s and {high:.9} s"),
+        format!("{theory:.6e} s"),
+        format!("between {low:.6e} s and {high:.6e} s"),
         format!("within {ROUNDINGS} eps"),
     ];
     let holds = low <= theory * (1.0 + slack) && high >= theory * (1.0 - slack) && high - low <= slack * high;

@@ -8,6 +8,7 @@ use super::candidate::Candidate;
 use super::iso::sweeps;
 use super::ucurve::{INDEPENDENT, Minimum, minima};
 use super::{Charge, Part, Row};
+use crate::page::scene_title;
 use crate::rotation::Rule;
 use crate::run::Precision;
 use crate::study::{color_of, command};
@@ -47,19 +48,19 @@ fn work(sweeps: &[Vec<&Row>], charge: Charge) -> Option<Figure> {
             "error against evaluations",
             "evaluations of the force up to the horizon",
             "Lower is cheaper, further left is more accurate: the lowest line at an error is the best buy. Counted exactly, in \
-             f64.",
+             f64. A method without any error on this scene has no line.",
         ),
         Charge::Time => (
             "time",
             "error against time",
             "time for a simulated second (ns)",
             "The same charged in time, least over the rounds, with a whisker up to the upper quartile: what a step costs beside \
-             its evaluations counts too. Of this machine and this run.",
+             its evaluations counts too. Of this machine and this run. A method without any error on this scene has no line.",
         ),
     };
     Some(Figure {
         id: format!("work-{id}-{}", scene.replace('/', "-")),
-        title: format!("{scene}: {title}, f64"),
+        title: format!("{}: {title}, f64", scene_title(scene)),
         caption: caption.to_owned(),
         x: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
         y: Axis::log(y),
@@ -139,9 +140,10 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
     let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
     Some(Figure {
         id: format!("u-curve-{}", first.scene.replace('/', "-")),
-        title: format!("{}: where a smaller step is worse", first.scene),
+        title: format!("{}: where a smaller step is worse", scene_title(&first.scene)),
         caption: "Truncation falls with the step, rounding grows with the number of steps, and between them lies the best step. \
-                  Without marks: A / n^p + eps S sqrt(n) / 10, to which nothing was fitted."
+                  Lines without marks are an estimate to which nothing was fitted, A / n^p + eps S sqrt(n) / 10: independent roundings. \
+                  Where roundings add up instead, as on many rigid bodies in f32, the measured error lies above it."
             .to_owned(),
         x: Axis::log("step size h (s)"),
         y: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
