@@ -104,6 +104,28 @@ impl Plan {
         }
     }
 
+    /// The flags beside `--scene` that run this plan again on one scene (on all where it is `None`), with a blank before each.
+    pub(crate) fn flags(&self, scene: Option<&str>) -> String {
+        let mut flags = String::new();
+        let mut add = |flag: &str, values: &[String]| {
+            flags.extend(values.iter().map(|value| format!(" --{flag} {value}")));
+        };
+        add("method", &self.method);
+        add("precision", &self.precision);
+        // A parameter that the scene lacks would be refused.
+        let takes = |setting: &&String| {
+            let Some((scene, (name, value))) = scene.zip(setting.split_once('=')) else { return false };
+            scenes::by_id(scene).is_ok_and(|mut known| known.scene_mut().set(scene, name, value).is_ok())
+        };
+        add("set", &self.set.iter().filter(takes).cloned().collect::<Vec<_>>());
+        let steps: Vec<String> = self.steps.iter().map(u64::to_string).collect();
+        add("steps", &if steps.is_empty() { Vec::new() } else { vec![steps.join(",")] });
+        if self.quick {
+            flags += " --quick";
+        }
+        flags
+    }
+
     /// The scenes, methods and precisions that it names.
     ///
     /// # Errors

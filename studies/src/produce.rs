@@ -11,6 +11,7 @@ use crate::convergence::Convergence;
 use crate::drift::DriftStudy;
 use crate::error::Error;
 use crate::page;
+use crate::plan::Plan;
 use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
@@ -89,7 +90,8 @@ impl Source {
     /// # Errors
     /// Rows that cannot be read, or that have no form as text; figures that cannot be drawn.
     pub fn product<S: Study>(&mut self) -> Result<Product, Error> {
-        from_rows::<S>(&self.rows::<S>()?, self.format)
+        let product = from_rows::<S>(&self.rows::<S>()?, self.format)?;
+        Ok(by_plan(product, &self.manifest.plan))
     }
 
     /// Every study of the report, in its order: measured one after the other, each on all cores, and then drawn and judged
@@ -107,8 +109,29 @@ impl Source {
             )*};
         }
         measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Tradeoff);
-        made.into_par_iter().map(|make| make()).collect()
+        let plan = &self.manifest.plan;
+        made.into_par_iter().map(|make| Ok(by_plan(make()?, plan))).collect()
     }
+}
+
+/// The product with commands that name the plan's flags, too: what is read under a chart makes that very chart.
+fn by_plan(mut product: Product, plan: &Plan) -> Product {
+    fn complete(block: &mut Block, plan: &Plan) {
+        match block {
+            Block::Figure { figure, .. } => {
+                let scene = figure.command.split_once("--scene ").map(|(_, scene)| scene);
+                let separator = if scene.is_none() && !figure.command.contains(" -- ") { " --" } else { "" };
+                let flags = plan.flags(scene);
+                if !flags.is_empty() {
+                    figure.command += &format!("{separator}{flags}");
+                }
+            }
+            Block::Group { blocks, .. } => blocks.iter_mut().for_each(|block| complete(block, plan)),
+            _ => {}
+        }
+    }
+    product.section.blocks.iter_mut().for_each(|block| complete(block, plan));
+    product
 }
 
 /// What follows from the rows of one study, still to be made.

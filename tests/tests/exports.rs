@@ -89,6 +89,9 @@ fn a_plan_runs_again_what_it_was_written_by_and_flags_take_its_place() {
     assert!(written.ends_with(expected) && written.starts_with("# "), "{written}");
     let page = fs::read_to_string(other.path().join("index.html")).expect("written");
     assert!(page.contains("stiffness=6, mass=2") && page.contains("--plan plan.toml"), "the page names its plan");
+    // Under a chart stands the command that makes it: with the plan's parameters, but for those that its scene lacks.
+    let made = "--bin convergence -- --scene oscillator --method rk4 --precision double-double --precision f64 --set stiffness=6";
+    assert!(page.contains(made), "{made}");
 }
 
 // Fails if: a message lacks the file, the line, the column or what would be right.

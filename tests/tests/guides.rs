@@ -116,6 +116,16 @@ fn run(document: &Path) {
     }
 }
 
+// Fails if: a place that was to be filled in is published empty.
+#[test]
+fn no_line_is_a_placeholder() {
+    for document in documents() {
+        let text = fs::read_to_string(&document).expect("readable");
+        let blank = |line: &&str| line.contains('_') && line.chars().all(|c| c.is_ascii_uppercase() || c == '_');
+        assert_eq!(text.lines().find(blank), None, "{}", document.display());
+    }
+}
+
 // Fails if: a flag, a scene or a file of a guide has another name than in the programs, or the output shown is not theirs.
 #[cfg(unix)]
 #[test]
