@@ -9,6 +9,14 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use verification::chromium::Chromium;
 
+/// Together the two pages are no larger than this, and the teaching page not than that: they are sent by mail.
+const TWO_PAGES: u64 = 5_000_000;
+const TEACHING_PAGE: u64 = 2_000_000;
+/// A page that paints its first words later than this after it was asked for feels slow, ms.
+const FIRST_PAINT_MS: f64 = 1000.0;
+/// One picture of sixty in a second, ms.
+const FRAME_MS: f64 = 16.0;
+
 /// Texts with less contrast than this against what they stand on are hard to read (WCAG 2.2, 1.4.3).
 const CONTRAST: f64 = 4.5;
 
@@ -53,6 +61,13 @@ const FAINT: &str = r"(() => {
 
 const TWO_FRAMES: &str = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))";
 
+/// Unfolds everything: what is folded has no size, and would be judged by nobody. How much there is.
+const UNFOLD: &str = "(() => {
+    const folded = [...document.querySelectorAll('details')];
+    for (const details of folded) details.open = true;
+    return folded.length;
+})()";
+
 /// What every page of the report owes its reader, in light and dark, on a desk and on a phone.
 fn is_readable(name: &str, ready: &str) {
     let file = page(name);
@@ -62,6 +77,8 @@ fn is_readable(name: &str, ready: &str) {
             browser.open(&file, width, dark);
             browser.wait(ready);
             let place = format!("{name}, {width} px, dark {dark}");
+            assert!(browser.value(UNFOLD).as_u64() > Some(0), "{place}: nothing to unfold");
+            browser.value(TWO_FRAMES);
             assert_eq!(browser.complaints(&file), Vec::<String>::new(), "{place}");
             assert!(browser.value("document.querySelectorAll('svg').length").as_u64() > Some(3), "{place}: charts");
             assert_eq!(browser.value(NAMELESS), json!([]), "{place}: charts without a name");
@@ -83,6 +100,28 @@ fn the_report_is_readable_and_loads_nothing() {
 #[ignore = "needs chromium and a report"]
 fn the_teaching_page_is_readable_and_loads_nothing() {
     is_readable("teach.html", "!!window.teach");
+}
+
+#[test]
+#[ignore = "needs chromium and a report"]
+fn the_pages_are_small_enough_to_send() {
+    let size = |name: &str| std::fs::metadata(page(name)).expect("a file").len();
+    let (report, teaching) = (size("index.html"), size("teach.html"));
+    assert!(teaching <= TEACHING_PAGE, "teach.html: {teaching} bytes");
+    assert!(report + teaching <= TWO_PAGES, "index.html: {report} bytes, teach.html: {teaching} bytes");
+}
+
+#[test]
+#[ignore = "needs chromium and a report"]
+fn the_pages_paint_within_a_second() {
+    let mut browser = Chromium::start();
+    for name in ["index.html", "teach.html"] {
+        let paint = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null";
+        browser.open(&page(name), 1200, false);
+        browser.wait(&format!("({paint}) !== null"));
+        let painted = browser.value(paint).as_f64().expect("a time");
+        assert!(painted < FIRST_PAINT_MS, "{name}: first words after {painted} ms");
+    }
 }
 
 fn teaching() -> (Chromium, PathBuf) {
@@ -122,6 +161,68 @@ fn an_arrow_key_on_the_step_changes_the_pictures_and_the_numbers() {
         );
     }
     assert_eq!(browser.complaints(&file), Vec::<String>::new());
+}
+
+/// The page says itself how long it took; the proof in the worker is let finish before, as it wants a processor of its own.
+#[test]
+#[ignore = "needs chromium and a report"]
+fn the_page_follows_the_hand() {
+    let (mut browser, file) = teaching();
+    browser.wait("document.getElementById('badge').dataset.finished === 'true'");
+    let redrawn = "(async () => {
+        const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+        const slider = document.getElementById('h'), all = [];
+        for (const button of document.querySelectorAll('#stops button')) {
+            button.click();
+            await frame();
+            const took = [], edges = new Set();
+            for (let value = +slider.min; value <= +slider.max; value += 8) {
+                slider.value = value;
+                slider.dispatchEvent(new Event('input'));
+                await frame();
+                took.push(window.teach.took);
+                edges.add(slider.getBoundingClientRect().left);
+            }
+            all.push({ took, edges: edges.size });
+        }
+        return all;
+    })()";
+    let stops = browser.value(redrawn);
+    let stops = stops.as_array().expect("a list");
+    assert_eq!(stops.len(), 8);
+    for (stop, seen) in stops.iter().enumerate() {
+        let mut took: Vec<f64> = seen["took"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+        took.sort_by(f64::total_cmp);
+        assert_eq!(took.len(), 31, "stop {stop}: a time for each place of the slider");
+        let median = took[took.len() / 2];
+        assert!(median > 0.0 && median < FRAME_MS, "stop {stop}: half of the redraws take longer than {median} ms");
+        assert_eq!(seen["edges"], 1, "stop {stop}: the slider runs away from the hand");
+    }
+    assert_eq!(browser.complaints(&file), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium and a report"]
+fn a_browser_that_lacks_something_is_told_so() {
+    let file = page("teach.html");
+    let mut browser = Chromium::start();
+    let told = |browser: &mut Chromium, id: &str| {
+        let text = browser.value(&format!("document.getElementById('{id}').innerText"));
+        text.as_str().unwrap_or_default().to_owned()
+    };
+    let broken = [
+        ("delete globalThis.DecompressionStream", "failed", "DecompressionStream"),
+        ("delete globalThis.WebAssembly", "failed", "WebAssembly"),
+        ("WebAssembly.instantiate = () => Promise.reject(new Error('no memory'))", "failed", "no memory"),
+        ("globalThis.Worker = class { constructor() { throw new Error('no workers'); } }", "badge-text", "no workers"),
+    ];
+    for (source, place, word) in broken {
+        let script = browser.send("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": source }));
+        browser.open(&file, 1200, false);
+        browser.wait(&format!("document.getElementById('{place}').innerText.includes('{word}')"));
+        assert_eq!(told(&mut browser, "failed").is_empty(), place != "failed", "{source}");
+        browser.send("Page.removeScriptToEvaluateOnNewDocument", &script);
+    }
 }
 
 #[test]

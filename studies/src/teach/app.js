@@ -3,8 +3,8 @@ const $ = (id) => document.getElementById(id);
 const DATA = JSON.parse($("data").textContent);
 const METHODS = DATA.methods.map((m) => ({ ...m, keys: { method: m.id } }));
 const LOOKS = 360;
-// Double-double takes a hundred times as long.
-const mostSteps = () => (state.precision === "double-double" ? 400 : 6000);
+// So many steps over the picture in double-double, and no more.
+const SLOW_STEPS = 400;
 const state = { scene: "oscillator", methods: [], precision: "f64", storage: "world-omega", h: 0.05, set: {}, stop: 0 };
 const scenes = {};
 let ask, scene, wanted = false;
@@ -60,6 +60,7 @@ function run(m, steps) {
   result.fourthLargest = largest(result.fourth.map(([, x]) => x).filter((x) => !Number.isNaN(x)));
   return result;
 }
+const counted = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
 const largest = (list) => list.reduce((a, b) => Math.max(a, b), 0);
 
 // The error of the first quantity at the scene's horizon with a step near h, as the convergence study measures it.
@@ -82,6 +83,16 @@ function line(m) {
   });
 }
 
+// Size of the first quantity at the horizon, in the unit of its error: the report's where it has rows of these parameters.
+function exactSize() {
+  const { scale } = DATA.scenes.find((s) => s.id === state.scene);
+  if (scale !== null && !view.changed()) return scale;
+  return kept(["size", state.scene, settings()].join(), () => {
+    const { rows } = table(ask("exact", { scene: state.scene, set: settings(), end_s: scene.horizon_s, steps: 1 }));
+    return norm(columns(rows[1], scene.quantities[0]));
+  });
+}
+
 // Spectral radius against omega h, for a spring of the same frequency.
 function amplification(m) {
   const spring = state.scene.endsWith("oscillator") ? { scene: state.scene, set: settings() } : { scene: "oscillator", set: [`stiffness=${1.5 * view.omega ** 2}`] };
@@ -99,10 +110,15 @@ function radiusAt(m) {
 // What the charts, the table and the story look at.
 const view = {
   error: (m, finer = 1, precision = state.precision) => errorOf(m, stepsTo(scene.horizon_s, view.h) * finer, precision).error,
+  ofReport: () => view.entries.every((m) => line(m).reported),
+  changed: () => Object.keys(state.set).length > 0,
+  precision: () => state.precision,
+  values: () => values(),
   best: (m) => line(m).points.filter((p) => p.error !== null).reduce((a, b) => (b.error < a.error ? b : a)),
   radius: (id) => radiusAt(METHODS.find((m) => m.id === id)),
+  finest: (m) => Math.min(...line(m).points.map((p) => p.h)),
   needs(m, part) {
-    const size = DATA.scenes.find((s) => s.id === state.scene).scale;
+    const size = exactSize();
     const fine = line(m).points.filter((p) => Number.isFinite(p.error) && p.error !== null && p.error <= part * size);
     return fine.length ? fine.reduce((a, b) => (b.h > a.h ? b : a)) : null;
   },
@@ -111,8 +127,8 @@ const view = {
 function look() {
   view.scene = scene;
   view.there = null;
+  view.h = state.h;
   // The run ends with a whole step, near the end of the picture.
-  view.h = Math.max(state.h, scene.end / mostSteps());
   view.steps = stepsTo(scene.end, view.h);
   view.omega = scene.omega ? scene.omega(values()) : NaN;
   view.homega = view.omega * view.h;
@@ -129,7 +145,7 @@ function want() {
     look();
     draw();
     const took = performance.now() - from;
-    $("speed").textContent = `Computed and drawn in ${took.toFixed(1)} ms: ${view.entries.length} runs of ${view.steps} steps.`;
+    $("speed").textContent = `Computed and drawn in ${took.toFixed(1)} ms: ${counted(view.entries.length, "run")} of ${counted(view.steps, "step")}.`;
     window.teach = { took, h: view.h, steps: view.steps };
   });
 }

@@ -1,5 +1,7 @@
 // Runs in a worker: every row of the report once more, in this browser, and compared bit for bit.
-onmessage = async ({ data: { module, data, rows: all, set } }) => {
+onmessage = ({ data }) => recomputed(data).catch((error) => postMessage({ failed: error.message }));
+
+async function recomputed({ module, data, rows: all, set }) {
   const ask = await start(module);
   const same = (a, b) => Object.is(a, b === null ? NaN : b);
   const groups = new Map();
@@ -29,4 +31,4 @@ onmessage = async ({ data: { module, data, rows: all, set } }) => {
     if (performance.now() - told > 50) { postMessage({ done, wrong, finished: false }); told = performance.now(); }
   }
   postMessage({ done, wrong, finished: true });
-};
+}

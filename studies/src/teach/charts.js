@@ -51,7 +51,31 @@ function path(points, x, y) {
 const frame = (id, inside) =>
   `<defs><clipPath id="clip-${id}"><rect x="${LEFT}" y="${TOP}" width="${W - LEFT - RIGHT}" height="${H - TOP - BOTTOM}"/></clipPath></defs>${inside}`;
 
-// series: {points, css, dots}; marks: {at: [x, y], css}; shade: [y0, y1, css]; square: the same scale on both axes.
+// Lines that run together would hide each other: they share the way in dashes. One attribute for each list of places [x, y]
+// on the sheet; two lists run together where more than half of their places do.
+function shared(lists) {
+  const near = ([a, b], [c, d]) => Math.abs(a - c) < 1.5 && Math.abs(b - d) < 1.5;
+  const together = (p, q) => {
+    const n = Math.min(p.length, q.length);
+    let count = 0;
+    for (let i = 0; i < n; i++) if (near(p[i], q[i])) count++;
+    return n > 1 && 2 * count > n;
+  };
+  const groups = [];
+  lists.forEach((list, i) => {
+    const group = groups.find(([first]) => together(lists[first], list));
+    if (group) group.push(i); else groups.push([i]);
+  });
+  const dashes = lists.map(() => "");
+  // The first stays whole below the others.
+  for (const group of groups) for (let k = 1; k < group.length; k++) dashes[group[k]] = ` stroke-dasharray="9 ${9 * (group.length - 1)}" stroke-dashoffset="${-9 * k}"`;
+  return dashes;
+}
+
+// How far out a mark stands so that the marks after it at the same place leave a ring of it.
+const rings = (places) => places.map((p, i) => 6 + 2.5 * Math.min(3, places.slice(i + 1).filter((q) => Math.hypot(p[0] - q[0], p[1] - q[1]) < 4).length));
+
+// series: {points, css, dots}; marks: {at: [x, y], css}; lines: {from, to, css}; shade: [y0, y1]; square: the same scale on both axes.
 function chart(svg, { x: xs, y: ys, series, marks = [], shade, lines = [], square, name }) {
   if (square) [xs, ys] = squared(xs, ys);
   const id = svg.id, x = axis(xs, LEFT, W - RIGHT), y = axis(ys, H - BOTTOM, TOP);
@@ -60,16 +84,18 @@ function chart(svg, { x: xs, y: ys, series, marks = [], shade, lines = [], squar
   for (const [px] of x.marks) s += `<path class="grid" d="M${px.toFixed(1)} ${TOP}V${H - BOTTOM}"/>`;
   for (const [, py] of y.marks.map(([p, t]) => [t, p])) s += `<path class="grid" d="M${LEFT} ${py.toFixed(1)}H${W - RIGHT}"/>`;
   let inside = "";
-  for (const { from, to, css, text } of lines) {
-    inside += `<path class="line ${css}" d="${path([from, to], x, y)}"/>`;
-    if (text) inside += `<text class="note" x="${(x.at(to[0]) - 5).toFixed(1)}" y="${TOP + 14}" text-anchor="end">${escaped(text)}</text>`;
-  }
-  for (const { points, css, dots } of series) {
-    inside += `<path class="line ${css}" d="${path(points, x, y)}"/>`;
+  for (const { from, to, css } of lines) inside += `<path class="line ${css}" d="${path([from, to], x, y)}"/>`;
+  const place = ([a, b]) => [x.at(a), y.at(b)];
+  // The exact motion is broad and lies below: it hides nothing, and nothing hides it.
+  const dashes = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
+  for (const [i, { points, css, dots }] of series.entries()) {
+    inside += `<path class="line ${css}"${dashes[i]} d="${path(points, x, y)}"/>`;
     if (dots) for (const p of points) inside += dot(x.at(p[0]), y.at(p[1]), 2.2, css);
   }
-  for (const { at, css } of marks) inside += dot(x.at(at[0]), y.at(at[1]), 6, `mark ${css}`);
   s += `<g clip-path="url(#clip-${id})">${inside}</g>`;
+  const ends = marks.map(({ at }) => place(at)), sizes = rings(ends);
+  // Over the edge of the sheet, not cut by it.
+  for (const [i, { css }] of marks.entries()) s += mark(...ends[i], sizes[i], css);
   for (const [px, text] of x.marks) s += `<text x="${px.toFixed(1)}" y="${H - BOTTOM + 17}" text-anchor="middle">${text}</text>`;
   for (const [py, text] of y.marks) s += `<text x="${LEFT - 6}" y="${(py + 4).toFixed(1)}" text-anchor="end">${text}</text>`;
   s += `<path class="border" d="M${LEFT} ${TOP}V${H - BOTTOM}H${W - RIGHT}"/>`;
@@ -79,11 +105,10 @@ function chart(svg, { x: xs, y: ys, series, marks = [], shade, lines = [], squar
 }
 
 function dot(px, py, r, css) {
-  if (!Number.isFinite(px) || !Number.isFinite(py)) return "";
-  // A mark that has left the sheet stays at its edge.
-  const cx = Math.max(LEFT + 3, Math.min(W - RIGHT - 3, px)), cy = Math.max(TOP + 3, Math.min(H - BOTTOM - 3, py));
-  return `<circle class="dot ${css}" cx="${cx.toFixed(1)}" cy="${cy.toFixed(1)}" r="${r}"/>`;
+  return Number.isFinite(px) && Number.isFinite(py) ? `<circle class="dot ${css}" cx="${px.toFixed(1)}" cy="${py.toFixed(1)}" r="${r}"/>` : "";
 }
+// A mark that has left the sheet stays at its edge.
+const mark = (px, py, r, css) => dot(Math.max(LEFT, Math.min(W - RIGHT, px)), Math.max(TOP, Math.min(H - BOTTOM, py)), r, `mark ${css}`);
 
 function squared(xs, ys) {
   const wide = (xs.to - xs.from) / (W - LEFT - RIGHT), high = (ys.to - ys.from) / (H - TOP - BOTTOM), k = Math.max(wide, high);
@@ -123,13 +148,14 @@ function sphere(svg, { series, marks = [], name, seen }) {
   };
   const circle = (f) => pieces(Array.from({ length: 73 }, (_, k) => f((k * Math.PI) / 36)));
   let back = "", front = "";
-  const both = (d, css) => { back += `<path class="line behind ${css}" d="${d[1]}"/>`; front += `<path class="line ${css}" d="${d[0]}"/>`; };
+  const both = (d, css, dash = "") => { back += `<path class="line behind ${css}"${dash} d="${d[1]}"/>`; front += `<path class="line ${css}"${dash} d="${d[0]}"/>`; };
   for (const z of [-0.5, 0, 0.5]) both(circle((a) => [Math.cos(a) * Math.sqrt(1 - z * z), Math.sin(a) * Math.sqrt(1 - z * z), z]), "wire");
   for (const m of [0, 1, 2]) both(circle((a) => [Math.sin(a) * Math.cos((m * Math.PI) / 3), Math.sin(a) * Math.sin((m * Math.PI) / 3), Math.cos(a)]), "wire");
-  for (const { points, css } of series) both(pieces(points), css);
-  for (const { at, css } of marks) {
-    const [px, py, depth] = place(at);
-    const text = Number.isFinite(px) ? `<circle class="dot mark ${css}${depth < 0 ? " behind" : ""}" cx="${px.toFixed(1)}" cy="${py.toFixed(1)}" r="6"/>` : "";
+  const dashes = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
+  for (const [i, { points, css }] of series.entries()) both(pieces(points), css, dashes[i]);
+  const ends = marks.map(({ at }) => place(at)), sizes = rings(ends);
+  for (const [i, { css }] of marks.entries()) {
+    const [px, py, depth] = ends[i], text = dot(px, py, sizes[i], `mark ${css}${depth < 0 ? " behind" : ""}`);
     if (depth < 0) back += text; else front += text;
   }
   show(svg, `${back}<circle class="rim" cx="${cx}" cy="${cy}" r="${R}"/>${front}`, name);

@@ -13,9 +13,22 @@ function choose(id) {
 }
 
 function setStep(h) {
+  limit();
   $("h").value = slide(h);
+  slid();
+}
+
+function slid() {
   const [low, high] = scene.h;
   state.h = low * (high / low) ** ($("h").value / $("h").max);
+}
+
+// Double-double takes a hundred times as long: the slider ends where a picture still follows the hand.
+function limit() {
+  const [low, high] = scene.h, slow = state.precision === "double-double", n = +$("h").max;
+  $("h").min = slow ? Math.ceil((n * Math.log(Math.max(1, scene.end / SLOW_STEPS / low))) / Math.log(high / low)) : 0;
+  $("limit").hidden = !slow;
+  $("limit").textContent = slow ? `A step in double-double takes about a hundred times as long, so the slider begins at ${SLOW_STEPS} steps over the picture.` : "";
 }
 
 function fill() {
@@ -51,7 +64,7 @@ function parameter(input) {
   state.set[input.name] = text;
   if (text === scene.parameters.find((p) => p.name === input.name).value) delete state.set[input.name];
   try {
-    ask("describe", { scene: state.scene, set: settings() });
+    scene = { ...scene, ...durations(said(ask, state.scene, settings())) };
     $("refused").textContent = "";
     input.removeAttribute("aria-invalid");
   } catch (error) {
@@ -63,9 +76,9 @@ function parameter(input) {
 }
 
 function listen() {
-  $("h").addEventListener("input", () => { const [low, high] = scene.h; state.h = low * (high / low) ** ($("h").value / $("h").max); want(); });
+  $("h").addEventListener("input", () => { slid(); want(); });
   $("scene").addEventListener("change", () => { choose($("scene").value); fill(); setStep(Math.sqrt(scene.h[0] * scene.h[1])); want(); });
-  $("precision").addEventListener("change", () => { state.precision = $("precision").value; want(); });
+  $("precision").addEventListener("change", () => { state.precision = $("precision").value; setStep(state.h); want(); });
   $("storage").addEventListener("change", () => { state.storage = $("storage").value; want(); });
   $("methods").addEventListener("change", () => { state.methods = [...$("methods").querySelectorAll(":checked")].map((c) => c.value); want(); });
   $("fields").addEventListener("change", (event) => parameter(event.target));
@@ -82,6 +95,20 @@ function themed() {
   tell();
 }
 
+// The proof broke off: neither held nor refuted.
+function unchecked(why) {
+  $("badge-bar").hidden = true;
+  $("badge-sign").textContent = "✗";
+  $("badge").className = "broken";
+  $("badge-text").textContent = `The report's numbers could not be recomputed in this browser: ${why || "its worker did not start"}`;
+}
+
+// What an old browser lacks.
+function lacking() {
+  const needed = { WebAssembly: globalThis.WebAssembly, DecompressionStream: globalThis.DecompressionStream };
+  return Object.keys(needed).filter((name) => !needed[name]);
+}
+
 // The worker has its own module, so that the page stays as quick as it is while the numbers are recomputed.
 function recompute(module) {
   // Double-double would take minutes; its rows are on the charts only.
@@ -89,13 +116,15 @@ function recompute(module) {
   $("badge-bar").max = numbers;
   if (!numbers) { $("badge-bar").hidden = true; $("badge-text").textContent = "This report has no row of a scene of this page to recompute."; return; }
   const worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
-  worker.onmessage = ({ data: { done, wrong, finished } }) => {
+  worker.onerror = ({ message }) => { worker.terminate(); unchecked(message); };
+  worker.onmessage = ({ data: { done, wrong, finished, failed } }) => {
+    if (failed) { worker.terminate(); return unchecked(failed); }
     $("badge-bar").value = done + wrong.length;
     $("badge-bar").hidden = finished;
     $("badge-sign").textContent = wrong.length ? "✗" : finished ? "✓" : "…";
     $("badge").className = wrong.length ? "broken" : finished ? "holds" : "";
     $("badge").title = wrong.slice(0, 5).join("\n");
-    $("badge-text").textContent = `${done} of ${numbers} numbers of the report recomputed in this browser, bit for bit${wrong.length ? `; ${wrong.length} differ, the first: ${wrong[0]}` : ""}`;
+    $("badge-text").textContent = `${done} of ${numbers} numbers in f32 and f64 on this page recomputed in this browser, bit for bit${wrong.length ? `; ${wrong.length} differ, the first: ${wrong[0]}` : ""}`;
     Object.assign($("badge").dataset, { done, wrong: wrong.length, all: numbers, finished });
     if (finished) worker.terminate();
   };
@@ -105,6 +134,8 @@ function recompute(module) {
 
 async function main() {
   themed();
+  const lacks = lacking();
+  if (lacks.length) return failed(`the browser lacks ${lacks.join(" and ")}. A current version of any browser has it`);
   const module = $("module").textContent.trim(), option = (value, text) => `<option value="${value}">${escaped(text)}</option>`;
   $("stops").innerHTML = STOPS.map((s, i) => `<li><button type="button" value="${i}">${i + 1}. ${escaped(s.title)}</button></li>`).join("");
   $("scene").innerHTML = Object.entries(SCENES).map(([id, s]) => option(id, s.title)).join("");
@@ -115,6 +146,6 @@ async function main() {
   const asked = /^#stop-([1-8])$/.exec(location.hash);
   go(asked ? asked[1] - 1 : 0);
   // First the picture, then the proof.
-  setTimeout(() => recompute(module), 300);
+  setTimeout(() => { try { recompute(module); } catch (error) { unchecked(error.message); } }, 300);
 }
-main();
+main().catch((error) => failed(error.message));

@@ -1,6 +1,4 @@
 // The four charts, the table and the story, from what `look` found.
-const nameOf = (m) => m.title;
-const css = (m) => `${color(m)}`;
 const inParts = (x) => (x === Infinity ? "without bound" : short(x));
 
 function draw() {
@@ -10,7 +8,7 @@ function draw() {
   drawConvergence(runs);
   drawFourth(runs);
   drawTable(runs);
-  $("h-value").textContent = `h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${view.steps} steps`;
+  $("h-value").textContent = `h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${counted(view.steps, "step")}`;
   $("h").setAttribute("aria-valuetext", `${short(view.h)} seconds`);
   const stop = STOPS[state.stop], own = stop.set.scene === state.scene && stop.set.methods.every((id) => state.methods.includes(id));
   $("story").innerHTML = `<p>${own ? stop.story(view) : "You have left the path, and everything stays live: choose, drag, compare. “Start over” takes you back."}</p>`;
@@ -28,10 +26,10 @@ function drawPicture(runs) {
   const [title, note] = PICTURE[scene.picture], truth = exact().points, svg = $("picture");
   $("picture-title").textContent = title;
   $("picture-note").textContent = `${note}; grey: exact`;
-  const far = runs.map(([m, r]) => `${nameOf(m)} ${r.outcome === "finished" ? "ends" : "fails"}`).join(", ");
+  const far = runs.map(([m, r]) => `${m.title} ${r.outcome === "finished" ? "ends" : "fails"}`).join(", ");
   const name = `${title} of ${scene.title}: exact motion and ${far}; step ${short(view.h)} seconds`;
-  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.points, css: css(m), dots: view.steps <= 60 && scene.picture !== "sphere" }))];
-  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.points.at(-1), css: css(m) }));
+  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.points, css: color(m), dots: view.steps <= 60 && scene.picture !== "sphere" }))];
+  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.points.at(-1), css: color(m) }));
   if (scene.picture === "sphere") return sphere(svg, { series, marks, name, seen: truth });
   const [q, v] = scene.quantities, part = (i) => extent(truth.map((p) => p[i]), runs.flatMap(([, r]) => r.points.map((p) => p[i])));
   const labels = {
@@ -55,9 +53,9 @@ function drawEnergy(runs) {
     // Rounding is not worth a picture of its own.
     if (y.to - y.from < 1e-3) { const c = (y.from + y.to) / 2; y = { from: c - 5e-4, to: c + 5e-4 }; }
   }
-  const name = `Energy in parts of its start over ${scene.end} seconds: ${runs.map(([m, r]) => `${nameOf(m)} changes by ${inParts(r.energyChange)}`).join(", ")}`;
-  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.energy, css: css(m) }))];
-  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.energy.at(-1), css: css(m) }));
+  const name = `Energy in parts of its start over ${scene.end} seconds: ${runs.map(([m, r]) => `${m.title} changes by ${inParts(r.energyChange)}`).join(", ")}`;
+  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.energy, css: color(m) }))];
+  const marks = runs.filter(([, r]) => r.outcome === "finished").map(([m, r]) => ({ at: r.energy.at(-1), css: color(m) }));
   chart($("energy"), { x: { from: 0, to: scene.end, label: "time (s)" }, y: { ...y, label: "E / E₀" }, series, marks, name });
 }
 
@@ -66,15 +64,17 @@ function drawConvergence(runs) {
   const good = (p) => p.error !== null && p.error > 0 && Number.isFinite(p.error);
   const errors = lines.flatMap(([, l]) => l.points.filter(good).map((p) => p.error)), steps = lines.flatMap(([, l]) => l.points.map((p) => p.h));
   const here = runs.map(([m]) => [m, errorOf(m, stepsTo(scene.horizon_s, view.h))]);
-  $("line-note").textContent = `error of the ${QUANTITY[q.id]} after ${scene.horizon_s} s${lines.every(([, l]) => l.reported) ? "" : ", computed here"}`;
+  const reported = lines.filter(([, l]) => l.reported).length;
+  const source = reported === 0 ? "computed here" : reported === lines.length ? "the report's rows" : "the report's, or computed here";
+  $("line-note").textContent = `${QUANTITY[q.id]} error after ${scene.horizon_s} s; ${source}`;
   const low = 10 ** Math.floor(Math.log10(Math.min(...errors, 1e-2)) - 0.01), high = 10 ** Math.ceil(Math.log10(Math.min(1e3, largest(errors) || 1)));
   const x = { from: Math.min(...steps, view.h) / 1.3, to: Math.max(...steps, view.h) * 1.3, log: true, label: "step (s)" };
-  const name = `Error against step: ${here.map(([m, e]) => `${nameOf(m)} ${short(e.error)} ${q.unit}`).join(", ")} at ${short(view.h)} seconds`;
+  const name = `Error against step: ${here.map(([m, e]) => `${m.title} ${short(e.error)} ${q.unit}`).join(", ")} at ${short(view.h)} seconds`;
   chart($("convergence"), {
     x, y: { from: low, to: high, log: true, label: `error (${q.unit})` }, name,
-    series: lines.map(([m, l]) => ({ points: l.points.filter(good).map((p) => [p.h, p.error]), css: css(m), dots: true })),
+    series: lines.map(([m, l]) => ({ points: l.points.filter(good).map((p) => [p.h, p.error]), css: color(m), dots: true })),
     lines: [{ from: [view.h, low], to: [view.h, high], css: "cursor" }],
-    marks: here.filter(([, e]) => good(e)).map(([m, e]) => ({ at: [e.h, e.error], css: css(m) })),
+    marks: here.filter(([, e]) => good(e)).map(([m, e]) => ({ at: [e.h, e.error], css: color(m) })),
   });
 }
 
@@ -83,33 +83,33 @@ function drawFourth(runs) {
   const time = { from: 0, to: scene.end, label: "time (s)" };
   if (Number.isFinite(view.omega)) {
     title.textContent = "Stability";
-    note.textContent = "of a spring, in one step";
+    note.textContent = `of ${scene.spring}, in one step`;
     const at = runs.map(([m]) => [m, radiusAt(m)]);
     return chart(svg, {
       x: { from: 0, to: 3.2, label: "ωh" }, y: { from: 0.3, to: 10, log: true, label: "largest factor in a step" }, shade: [1, 10],
-      series: runs.map(([m]) => ({ points: amplification(m), css: css(m) })), marks: at.map(([m, r]) => ({ at: [view.homega, r], css: css(m) })),
+      series: runs.map(([m]) => ({ points: amplification(m), css: color(m) })), marks: at.map(([m, r]) => ({ at: [view.homega, r], css: color(m) })),
       lines: [{ from: [view.homega, 0.3], to: [view.homega, 10], css: "cursor" }],
-      name: `Stability: at omega h = ${view.homega.toPrecision(3)} one step stretches by ${at.map(([m, r]) => `${nameOf(m)} ${r.toPrecision(4)}`).join(", ")}; above one it grows`,
+      name: `Stability: at omega h = ${view.homega.toPrecision(3)} one step stretches by ${at.map(([m, r]) => `${m.title} ${r.toPrecision(4)}`).join(", ")}; above one it grows`,
     });
   }
   const spin = scene.balance("angular-momentum"), conserved = spin && spin.conserved;
   title.textContent = conserved ? "Angular momentum" : "Distance from the exact motion";
   note.textContent = conserved ? "its length, in parts of the start" : "over the run";
-  const series = runs.map(([m, r]) => ({ points: r.fourth.map(([t, x]) => [t, Math.max(x, 1e-17)]), css: css(m) }));
+  const series = runs.map(([m, r]) => ({ points: r.fourth.map(([t, x]) => [t, Math.max(x, 1e-17)]), css: color(m) }));
   const all = series.flatMap(({ points }) => points.map((p) => p[1])).filter(Number.isFinite);
   const from = 10 ** Math.floor(Math.log10(Math.min(1e-2, ...all)) - 0.01), top = Math.max(1, Math.min(1e3, largest(all)));
   const y = { from, to: 10 ** Math.ceil(Math.log10(top)), log: true, label: conserved ? "|L| / |L₀| − 1" : "error (m)" };
-  const named = runs.map(([m, r]) => `${nameOf(m)} ${inParts(r.fourthLargest)}`).join(", ");
+  const named = runs.map(([m, r]) => `${m.title} ${inParts(r.fourthLargest)}`).join(", ");
   chart(svg, { x: time, y, series, name: `${title.textContent}: largest ${named}` });
 }
 
 function drawTable(runs) {
   const q = scene.quantities[0], most = largest(runs.map(([, r]) => r.evaluations)) || 1;
-  const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, "for half the step"];
+  const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, `with half the step&nbsp;(${q.unit})`];
   const head = (text) => `<th scope="col" class="right">${text}</th>`;
   $("cost-head").innerHTML = `<tr><th scope="col">Method</th>${heads.map(head).join("")}<th scope="col">run</th></tr>`;
-  const bar = (m, r) => `<i class="bar ${css(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
-  const line = ([m, r]) => `<tr><th scope="row"><i class="swatch ${css(m)}"></i>${escaped(m.title)}</th>
+  const bar = (m, r) => `<i class="bar ${color(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
+  const line = ([m, r]) => `<tr><th scope="row"><i class="swatch ${color(m)}"></i>${escaped(m.title)}</th>
     ${[bar(m, r), inParts(r.energyChange), short(view.error(m)), short(view.error(m, 2))].map((cell) => `<td class="right">${cell}</td>`).join("")}
     <td>${r.outcome === "finished" ? "finished" : `${r.outcome} at step ${r.failedStep}`}</td></tr>`;
   $("cost").innerHTML = runs.map(line).join("");

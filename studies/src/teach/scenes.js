@@ -1,9 +1,9 @@
 // What the page does with each scene: how long, which steps, which picture. Physics is the module's.
 const norm = (v) => Math.hypot(...v);
 const SCENES = {
-  "oscillator": { title: "Mass on a spring", end: 25, h: [0.01, 1.3], picture: "phase", omega: (p) => Math.sqrt(p.stiffness / p.mass) },
-  "damped-oscillator": { title: "Spring with a damper", end: 12, h: [0.01, 1.3], picture: "phase", omega: (p) => Math.sqrt(p.stiffness / p.mass) },
-  "pendulum": { title: "Pendulum, wide swing", end: 20, h: [0.01, 1], picture: "phase", omega: (p) => Math.sqrt(p.gravity / p.length) },
+  "oscillator": { title: "Mass on a spring", end: 25, h: [0.01, 1.3], picture: "phase", spring: "this spring", omega: (p) => Math.sqrt(p.stiffness / p.mass) },
+  "damped-oscillator": { title: "Spring with a damper", end: 12, h: [0.01, 1.3], picture: "phase", spring: "this damped spring", omega: (p) => Math.sqrt(p.stiffness / p.mass) },
+  "pendulum": { title: "Pendulum, wide swing", end: 20, h: [0.01, 1], picture: "phase", spring: "a spring as quick as its small swings", omega: (p) => Math.sqrt(p.gravity / p.length) },
   "kepler": { title: "Planet on an ellipse", end: 40, h: [0.02, 1], picture: "orbit" },
   "kepler/eccentric": { title: "Planet on a thin ellipse", end: 20, h: [0.005, 0.5], picture: "orbit" },
   "charged-particle/magnetic": { title: "Charge in a magnetic field", end: 20, h: [0.01, 1], picture: "circle" },
@@ -36,19 +36,22 @@ function across(field) {
   return [first, cross(b, first)];
 }
 
+// The lines in which the module describes a scene.
+const said = (ask, scene, set) => ask("describe", { scene, set }).text().trim().split("\n").map((line) => line.split("\t"));
+// Its horizon and its shortest time: they follow the parameters.
+const durations = (lines) => Object.fromEntries(lines.filter(([kind]) => kind.endsWith("_s")).map(([kind, value]) => [kind, +value]));
+
 // A scene as the module states it.
 function described(ask, id) {
-  const said = (set) => ask("describe", { scene: id, set }).text().trim().split("\n").map((line) => line.split("\t"));
-  const names = said([]).filter(([kind]) => kind === "parameter").map(([, name]) => name);
+  const names = said(ask, id, []).filter(([kind]) => kind === "parameter").map(([, name]) => name);
   const set = Object.fromEntries(DATA.set.map((s) => [s.slice(0, s.indexOf("=")), s.slice(s.indexOf("=") + 1)]).filter(([name]) => names.includes(name)));
-  const lines = said(Object.entries(set).map((s) => s.join("=")));
-    const scene = { id, set, ...SCENES[id], parameters: [], quantities: [], balances: [] };
+  const lines = said(ask, id, Object.entries(set).map((s) => s.join("=")));
+  const scene = { id, set, ...SCENES[id], ...durations(lines), parameters: [], quantities: [], balances: [] };
   let column = 2;
   for (const [kind, ...rest] of lines) {
     if (kind === "parameter") scene.parameters.push({ name: rest[0], unit: rest[1], about: rest[2], value: rest[3], range: rest[4] });
     else if (kind === "quantity") { scene.quantities.push({ id: rest[0], unit: rest[1], from: column, width: +rest[2] }); column += +rest[2]; }
     else if (kind === "balance") { scene.balances.push({ id: rest[0], unit: rest[1], from: column, width: +rest[2], conserved: rest[3] === "conserved" }); column += +rest[2]; }
-    else scene[kind] = kind.endsWith("_s") ? +rest[0] : rest[0];
   }
   scene.rigid = scene.quantities.some((q) => q.id === "attitude" && q.width === 4);
   scene.balance = (id) => scene.balances.find((b) => b.id === id);

@@ -1,6 +1,7 @@
-// The guided path: eight questions. Each sets the page and says what to see; every number in it is computed as it is read.
+// The guided path: eight questions. Each sets the page and says what to see; every number in it follows what the page is set to.
 const code = (text) => `<span class="num">${escaped(text)}</span>`;
 const times = (x) => code(`${short(x)}×`);
+const DIGITS = { "f32": "seven digits", "f64": "sixteen digits", "double-double": "thirty-one digits" };
 const ratioOf = (run) => run.energy.map(([, r]) => r);
 const STOPS = [
   {
@@ -38,10 +39,15 @@ const STOPS = [
     title: "Too small", question: "Why is smaller not always better?",
     set: { scene: "oscillator", methods: ["velocity-verlet", "rk4"], h: 0.012, precision: "f32" },
     story(v) {
-      const m = METHODS.find((m) => m.id === "rk4"), best = v.best(m);
-      return `This run is in f32, seven digits. RK4 errs by ${code(short(v.error(m)))} at this step, but by ${code(short(best.error))} at
-        h = ${code(short(best.h))} s: beyond that, each smaller step only adds one more rounding. The same step in f64 errs by
-        ${code(short(v.error(m, 1, "f64")))}. Slide up and down past the bottom of the line, then choose f64 and see the floor drop away.`;
+      const m = METHODS.find((m) => m.id === "rk4"), best = v.best(m), used = v.precision(), other = used === "f32" ? "f64" : "f32";
+      // Where the finest step of the line is the best, the line has no bottom to show.
+      const floor = v.finest(m) < best.h;
+      const bottom = floor
+        ? `but by ${code(short(best.error))} at h = ${code(short(best.h))} s: beyond that, each smaller step only adds one more rounding`
+        : `and by ${code(short(best.error))} at h = ${code(short(best.h))} s, the smallest of the line: its floor lies lower still`;
+      return `This run is in ${used}, ${DIGITS[used]}. RK4 errs by ${code(short(v.error(m)))} at this step, ${bottom}. The same step in ${other}
+        errs by ${code(short(v.error(m, 1, other)))}. ${used === "f32" ? "Slide up and down past the bottom of the line, then choose f64 and see the floor drop away."
+          : "Choose f32 to see the floor come up."}`;
     },
   },
   {
@@ -84,13 +90,17 @@ const STOPS = [
     story(v) {
       const one = (m) => {
         const need = v.needs(m, 0.01), step = need && `h = ${code(short(need.h))} s and ${code(need.evaluations)} evaluations`;
-        return `${escaped(m.title)} ${step ?? "a smaller step than any of the report's"}`;
+        return `${escaped(m.title)} ${step ?? "a smaller step than any of its line"}`;
       };
-      const change = (m) => `${escaped(m.title)} ${code(short(v.runs[m.id].energyChange))}`;
-      return `Ask for an error of 1 % of the distance after ${code(v.scene.horizon_s)} s, and the report answers: ${v.entries.map(one).join("; ")}. But that is
-        before the planet passes its sun, and passing takes ${code(short(v.scene.time_scale_s))} s: your step is ${code(short(v.h / v.scene.time_scale_s))} of it. Over
-        ${code(v.scene.end)} s the energy changes by ${v.entries.map(change).join(", ")} of itself, all of it there. Ask for the shortest time of
-        your scene, and for what must not drift; then drag.`;
+      const source = v.ofReport() ? "the report answers" : v.changed() ? "runs with your parameters answer, made in this browser"
+        : "runs in this browser answer, as this report has no rows of the scene";
+      const p = v.values(), round = 2 * Math.PI, n = Math.sqrt(p.mu / p.semi_major) / p.semi_major;
+      const first = (round - (((p.anomaly % round) + round) % round)) / n;
+      const change = (m) => `${code(inParts(v.runs[m.id].energyChange))} (${escaped(m.title)})`;
+      return `Ask for an error of 1 % of the distance after ${code(v.scene.horizon_s)} s, and ${source}: ${v.entries.map(one).join("; ")}. But the
+        planet passes its sun after ${code(short(first))} s, and passing takes only ${code(short(v.scene.time_scale_s))} s: your step is
+        ${code(short(v.h / v.scene.time_scale_s))} of that. Over ${code(v.scene.end)} s the energy changes by up to ${v.entries.map(change).join(", ")} of itself, and the
+        energy chart shows when: at each passing. Ask for the shortest time of your scene, and for what must not drift; then drag.`;
     },
   },
 ];
