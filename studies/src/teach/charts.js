@@ -51,25 +51,39 @@ function path(points, x, y) {
 const frame = (id, inside) =>
   `<defs><clipPath id="clip-${id}"><rect x="${LEFT}" y="${TOP}" width="${W - LEFT - RIGHT}" height="${H - TOP - BOTTOM}"/></clipPath></defs>${inside}`;
 
-// Lines that run together would hide each other: they share the way in dashes. One attribute for each list of places [x, y]
-// on the sheet; two lists run together where more than half of their places do.
+// Lines that run together would hide each other: they share the way in dashes, and what lies below is the
+// broader, where a line comes round over its own gaps. Attributes for each list of places [x, y]
+// on the sheet; a line runs together with another that passes within a pixel and a half of three of four of its places,
+// whenever it does: orbits coincide though one is late.
 function shared(lists) {
-  const near = ([a, b], [c, d]) => Math.abs(a - c) < 1.5 && Math.abs(b - d) < 1.5;
-  const together = (p, q) => {
-    const n = Math.min(p.length, q.length);
-    let count = 0;
-    for (let i = 0; i < n; i++) if (near(p[i], q[i])) count++;
-    return n > 1 && 2 * count > n;
+  const passes = (line, [x, y]) => {
+    for (let i = 1; i < line.length; i++) {
+      const [a, b] = line[i - 1], u = line[i][0] - a, v = line[i][1] - b;
+      const k = Math.max(0, Math.min(1, ((x - a) * u + (y - b) * v) / (u * u + v * v || 1)));
+      if ((a + k * u - x) ** 2 + (b + k * v - y) ** 2 < 2.25) return true;
+    }
+    return false;
+  };
+  const together = (line, other) => {
+    const places = other.filter((_, i) => i % Math.ceil(other.length / 24) === 0);
+    let missed = 0;
+    return places.length > 1 && places.every((p) => passes(line, p) || 4 * ++missed < places.length);
   };
   const groups = [];
   lists.forEach((list, i) => {
     const group = groups.find(([first]) => together(lists[first], list));
     if (group) group.push(i); else groups.push([i]);
   });
-  const dashes = lists.map(() => "");
-  // The first stays whole below the others.
-  for (const group of groups) for (let k = 1; k < group.length; k++) dashes[group[k]] = ` stroke-dasharray="9 ${9 * (group.length - 1)}" stroke-dashoffset="${-9 * k}"`;
-  return dashes;
+  const drawn = lists.map(() => "");
+  for (const group of groups) {
+    const n = group.length, grown = 2.4 / Math.max(1.5, n - 1);
+    for (let k = 0; k < n && n > 1; k++) {
+      // The first stays whole below the others.
+      const dash = k ? ` stroke-dasharray="9 ${9 * (n - 1)}" stroke-dashoffset="${-9 * k}"` : "";
+      drawn[group[k]] = `${dash} style="stroke-width:${(2 + grown * (n - 1 - k)).toFixed(1)}"`;
+    }
+  }
+  return drawn;
 }
 
 // How far out a mark stands so that the marks after it at the same place leave a ring of it.
@@ -87,9 +101,9 @@ function chart(svg, { x: xs, y: ys, series, marks = [], shade, lines = [], squar
   for (const { from, to, css } of lines) inside += `<path class="line ${css}" d="${path([from, to], x, y)}"/>`;
   const place = ([a, b]) => [x.at(a), y.at(b)];
   // The exact motion is broad and lies below: it hides nothing, and nothing hides it.
-  const dashes = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
+  const drawn = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
   for (const [i, { points, css, dots }] of series.entries()) {
-    inside += `<path class="line ${css}"${dashes[i]} d="${path(points, x, y)}"/>`;
+    inside += `<path class="line ${css}"${drawn[i]} d="${path(points, x, y)}"/>`;
     if (dots) for (const p of points) inside += dot(x.at(p[0]), y.at(p[1]), 2.2, css);
   }
   s += `<g clip-path="url(#clip-${id})">${inside}</g>`;
@@ -148,11 +162,11 @@ function sphere(svg, { series, marks = [], name, seen }) {
   };
   const circle = (f) => pieces(Array.from({ length: 73 }, (_, k) => f((k * Math.PI) / 36)));
   let back = "", front = "";
-  const both = (d, css, dash = "") => { back += `<path class="line behind ${css}"${dash} d="${d[1]}"/>`; front += `<path class="line ${css}"${dash} d="${d[0]}"/>`; };
+  const both = (d, css, how = "") => { back += `<path class="line behind ${css}"${how} d="${d[1]}"/>`; front += `<path class="line ${css}"${how} d="${d[0]}"/>`; };
   for (const z of [-0.5, 0, 0.5]) both(circle((a) => [Math.cos(a) * Math.sqrt(1 - z * z), Math.sin(a) * Math.sqrt(1 - z * z), z]), "wire");
   for (const m of [0, 1, 2]) both(circle((a) => [Math.sin(a) * Math.cos((m * Math.PI) / 3), Math.sin(a) * Math.sin((m * Math.PI) / 3), Math.cos(a)]), "wire");
-  const dashes = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
-  for (const [i, { points, css }] of series.entries()) both(pieces(points), css, dashes[i]);
+  const drawn = shared(series.map(({ points, css }) => (css === "exact" ? [] : points.map(place))));
+  for (const [i, { points, css }] of series.entries()) both(pieces(points), css, drawn[i]);
   const ends = marks.map(({ at }) => place(at)), sizes = rings(ends);
   for (const [i, { css }] of marks.entries()) {
     const [px, py, depth] = ends[i], text = dot(px, py, sizes[i], `mark ${css}${depth < 0 ? " behind" : ""}`);
