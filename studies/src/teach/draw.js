@@ -105,7 +105,7 @@ function drawFourth(runs) {
 
 function drawTable(runs) {
   const q = scene.quantities[0], most = largest(runs.map(([, r]) => r.evaluations)) || 1;
-  const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, `with half the step&nbsp;(${q.unit})`];
+  const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, `error with half the step&nbsp;(${q.unit})`];
   const head = (text) => `<th scope="col" class="right">${text}</th>`;
   $("cost-head").innerHTML = `<tr><th scope="col">Method</th>${heads.map(head).join("")}<th scope="col">run</th></tr>`;
   const bar = (m, r) => `<i class="bar ${color(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
