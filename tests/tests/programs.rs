@@ -200,7 +200,7 @@ fn bounds_ends_with_0_1_or_2_and_says_where() {
     assert_eq!(good.status.code(), Some(0), "{}{}", text(&good.stdout), text(&good.stderr));
     assert!(text(&good.stdout).contains("bounds hold, 0 broken, 0 not tested"), "{}", text(&good.stdout));
 
-    let row = "oscillator,rk4,f64,position,error-at-step,64,2.75,m,1e-3,1e-2,2e-3,measured x 5: a test,";
+    let row = "oscillator,rk4,f64,position,error-at-step,64,2.75,m,4e-4,1e-2,2e-3,measured x 5: a test,";
     let header = "scene,method,precision,quantity,kind,steps,end_s,unit,low,high,measured,reason,mutant";
     fs::write(&path, format!("{header}\n{row}\n# end: 1 rows\n")).expect("written");
     let broken = bounds(&["--bounds", file, "--junit", xml]);
@@ -216,7 +216,7 @@ fn bounds_ends_with_0_1_or_2_and_says_where() {
     fs::write(&path, format!("{header}\n{row}\n")).expect("written");
     let cut = bounds(&["--bounds", file]);
     assert_eq!(cut.status.code(), Some(2));
-    assert!(text(&cut.stderr).contains("b.csv:2:0: truncated"), "{}", text(&cut.stderr));
+    assert!(text(&cut.stderr).contains("b.csv:2: truncated"), "{}", text(&cut.stderr));
     assert_eq!(bounds(&["--bounds", "nowhere.csv"]).status.code(), Some(2));
     assert_eq!(bounds(&["--scene", "oscillator", "--method", "rk4/world-omega"]).status.code(), Some(2));
 }

@@ -4,17 +4,19 @@ use std::collections::BTreeMap;
 
 use reports::Table;
 
-use super::Bounds;
 use super::check::{Judged, judge};
 use super::row::{Kind, Row, Subject};
+use super::{Bounds, propose};
 use crate::error::Error;
 use crate::run::Precision;
 use crate::sweep::Progress;
 
-/// A margin above this proves little; only theory may ask for it.
+/// A margin above this proves little, whatever the reason.
 pub const VACUOUS: f64 = 3.0;
-/// Half the width that an interval of an exponent may have without theory.
+/// Half the width that an interval of an exponent may have.
 const WIDE_EXPONENT: f64 = 0.5;
+/// Theory alone may say that there is no error but rounding, from 0 to this many roundings: what is measured in there is luck.
+const ROUNDINGS: f64 = 16.0;
 
 /// What was found of one row.
 #[derive(Clone, Debug)]
@@ -25,7 +27,7 @@ pub struct Finding {
     pub margin: f64,
     /// Rounding in the number: f64 against double-double. `None` where it is not asked for.
     pub noise: Option<f64>,
-    /// The margin is above 3 and the reason is a measurement.
+    /// The margin is above 3, of an exponent above 0.5, and the row is not theory's '0 to at most 16 roundings'.
     pub vacuous: bool,
     /// A bound is nearer than the rounding noise.
     pub tight: bool,
@@ -35,7 +37,9 @@ pub struct Finding {
 pub struct Audit {
     /// Every row.
     pub findings: Vec<Finding>,
-    /// Scene and quantity, and the methods that no row covers in it.
+    /// Rows that would be proposed and are not there.
+    pub missing: Vec<Row>,
+    /// Scene and quantity, and the methods that no row covers in it: nothing is proposed for them.
     pub uncovered: Vec<(String, String, Vec<String>)>,
 }
 
@@ -60,14 +64,16 @@ pub fn audit(bounds: &Bounds, progress: &Progress) -> Result<Audit, Error> {
         .into_iter()
         .map(|one| {
             let reference = if of_error(&one.row) { exact.next().and_then(|e| e.measured.value()) } else { None };
-            finding(one, reference)
+            let rounding = bounds.known.rounding(&one.row);
+            finding(one, reference, rounding)
         })
         .collect();
-    Ok(Audit { findings, uncovered: uncovered(bounds) })
+    let missing = propose::missing(&bounds.known, &bounds.rows, progress);
+    Ok(Audit { findings, missing, uncovered: uncovered(bounds) })
 }
 
-/// One row's margin, given its number in double-double.
-pub fn finding(judged: Judged, exact: Option<f64>) -> Finding {
+/// One row's margin, given its number in double-double, and what one rounding of it is.
+pub fn finding(judged: Judged, exact: Option<f64>, rounding: f64) -> Finding {
     let row = &judged.row;
     let Some(x) = judged.measured.value() else {
         return Finding { judged, margin: f64::NAN, noise: None, vacuous: false, tight: false };
@@ -75,7 +81,8 @@ pub fn finding(judged: Judged, exact: Option<f64>) -> Finding {
     let margin = margin(row, x);
     let most = if row.kind.is_exponent() { WIDE_EXPONENT } else { VACUOUS };
     // Bounds are written with six digits.
-    let vacuous = !row.is_theory() && !(margin <= most * (1.0 + 1e-5));
+    let is_rounding = row.is_theory() && row.low == 0.0 && row.high <= ROUNDINGS * rounding;
+    let vacuous = !is_rounding && !(margin <= most * (1.0 + 1e-5));
     let noise = exact.map(|exact| (x - exact).abs());
     let above_low = if row.low == 0.0 { f64::INFINITY } else { x - row.low };
     let tight = noise.is_some_and(|noise| noise > 0.0 && above_low.min(row.high - x) < noise);
@@ -110,14 +117,55 @@ fn uncovered(bounds: &Bounds) -> Vec<(String, String, Vec<String>)> {
     open.into_iter().map(|((scene, quantity), methods)| (scene, quantity.to_owned(), methods)).collect()
 }
 
+impl Finding {
+    /// Whether the row should be mended.
+    pub fn is_flagged(&self) -> bool {
+        self.judged.is_broken() || self.vacuous || self.tight
+    }
+
+    fn what(&self) -> String {
+        let row = &self.judged.row;
+        let what = if self.judged.is_broken() {
+            return format!("broken: {}: {}: {}\n", row.name(), self.judged.measured.text(), self.judged.excess());
+        } else if self.tight {
+            "too tight, a bound is within the rounding noise"
+        } else {
+            "vacuous"
+        };
+        format!("{what}: {} (margin {:.3}): {}\n", row.name(), self.margin, row.reason)
+    }
+}
+
 impl Audit {
     /// Rows that should be mended.
     pub fn flagged(&self) -> Vec<&Finding> {
-        self.findings.iter().filter(|found| found.vacuous || found.tight).collect()
+        self.findings.iter().filter(|found| found.is_flagged()).collect()
     }
 
-    /// For a reader: every row's margin, then what is flagged, then what is not covered.
+    /// Whether no row is flagged and none is missing.
+    pub fn is_good(&self) -> bool {
+        self.missing.is_empty() && self.flagged().is_empty()
+    }
+
+    /// For a reader: what is flagged, what is missing, every row's margin, then what is not covered.
     pub fn text(&self) -> String {
+        let mut text = String::new();
+        self.flagged().iter().for_each(|found| text += &found.what());
+        for row in &self.missing {
+            text += &format!("missing: {}; --update adds it\n", row.name());
+        }
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text += &self.margins().to_text();
+        text += "\n\nnot covered by any row:\n";
+        for (scene, quantity, methods) in &self.uncovered {
+            text += &format!("  {scene}, {quantity}: {}\n", methods.join(", "));
+        }
+        text + &self.counts()
+    }
+
+    fn margins(&self) -> Table {
         let mut all = Table::new(&["bound", "measured", "margin", "noise", "mutant"], &["measured", "margin", "noise"]);
         for found in &self.findings {
             let row = &found.judged.row;
@@ -125,21 +173,7 @@ impl Audit {
             let margin = format!("{:.4}", found.margin);
             all.push([row.name(), found.judged.measured.text(), margin, noise, row.mutant.clone()]);
         }
-        let mut text = all.to_text();
-        for found in self.flagged() {
-            let what = if found.tight { "too tight: a bound is within the rounding noise" } else { "vacuous" };
-            text += &format!(
-                "\n{what}: {} (margin {:.3}): {}",
-                found.judged.row.name(),
-                found.margin,
-                found.judged.row.reason
-            );
-        }
-        text += "\n\nnot covered by any row:\n";
-        for (scene, quantity, methods) in &self.uncovered {
-            text += &format!("  {scene}, {quantity}: {}\n", methods.join(", "));
-        }
-        text + &self.counts()
+        all
     }
 
     fn counts(&self) -> String {
@@ -153,10 +187,12 @@ impl Audit {
         margins.sort_by(f64::total_cmp);
         let open: usize = self.uncovered.iter().map(|(_, _, methods)| methods.len()).sum();
         format!(
-            "\n{} rows: {} of theory, {} vacuous, {} too tight, {} without a mutant; median margin {:.4}; \
+            "\n{} rows: {} of theory, {} broken, {} missing, {} vacuous, {} too tight, {} without a mutant; median margin {:.4}; \
              {open} combinations of scene, method and quantity without a row\n",
             self.findings.len(),
             count(&|found| found.judged.row.is_theory()),
+            count(&|found| found.judged.is_broken()),
+            self.missing.len(),
             count(&|found| found.vacuous),
             count(&|found| found.tight),
             count(&|found| found.judged.row.mutant.is_empty()),

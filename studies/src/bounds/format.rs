@@ -6,6 +6,25 @@ use serde::{Deserialize, Serialize};
 use super::check::Judged;
 use crate::error::Error;
 
+/// The columns of a [`Line`], in their order.
+pub const COLUMNS: [&str; 15] = [
+    "scene",
+    "method",
+    "precision",
+    "quantity",
+    "kind",
+    "steps",
+    "end_s",
+    "unit",
+    "low",
+    "high",
+    "measured_then",
+    "measured",
+    "outcome",
+    "verdict",
+    "reason",
+];
+
 /// A verdict as one flat line. `--baseline` compares two files of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
@@ -68,12 +87,13 @@ impl Line {
     }
 }
 
-/// As CSV, with a header.
+/// As CSV, with a header, closed by a line that tells how many rows it holds: a result that was cut short is not compared.
 ///
 /// # Errors
 /// [`reports::Error::Rows`]; flat rows have a form.
 pub fn csv(judged: &[Judged]) -> Result<String, Error> {
-    Ok(reports::write_csv(&judged.iter().map(Line::of).collect::<Vec<_>>())?)
+    let rows = reports::write_csv(&judged.iter().map(Line::of).collect::<Vec<_>>())?;
+    Ok(format!("{rows}{}\n", super::read::end(judged.len())))
 }
 
 /// As a JSON array, one object a row.

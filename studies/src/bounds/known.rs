@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use faer::fx128;
+use integrator::Real;
 
 use super::mutants::Mutant;
 use super::row::{Kind, Row, Subject};
@@ -102,6 +103,15 @@ impl Known {
             ExpectedOrder::Of(order) => Some(order),
             _ => None,
         }
+    }
+
+    /// One rounding of what a row bounds: eps of its precision, times the length of an observed vector where that is above 1.
+    pub fn rounding(&self, row: &Row) -> f64 {
+        let size = match (row.quantity, self.scene(row)) {
+            (Subject::Error(quantity), Ok(scene)) => scene.exact(fx128::lit(row.end_s)).scale(quantity).max(1.0),
+            _ => 1.0,
+        };
+        row.precision.epsilon() * size
     }
 
     /// The unit of a row's numbers.

@@ -42,7 +42,7 @@ use crate::error::Error;
 use crate::run::Precision;
 use crate::sweep::Progress;
 use known::Known;
-use stepper::{Ask, Stepper};
+use stepper::Ask;
 
 /// The rows of a file, and the catalogue they speak of.
 pub struct Bounds {
@@ -139,19 +139,4 @@ impl Held {
             check::report(&self.judged)
         );
     }
-}
-
-/// A scene and a stepper of which a file has no row.
-pub fn uncovered<'a>(known: &'a Known, rows: &[Row]) -> Vec<(&'a dyn crate::scene::AnyScene, Stepper)> {
-    let covered: std::collections::HashSet<(&str, &str)> =
-        rows.iter().map(|row| (row.scene.as_str(), row.method.as_str())).collect();
-    let mut open = Vec::new();
-    for scene in known.in_order() {
-        for stepper in Stepper::all(scene) {
-            if !covered.contains(&(scene.id(), stepper.id().as_str())) {
-                open.push((scene, stepper));
-            }
-        }
-    }
-    open
 }

@@ -46,23 +46,28 @@ pub struct Flags {
     quick: bool,
 
     /// How the verdicts are printed
-    #[arg(long, value_enum, default_value = "table")]
+    #[arg(long, value_enum, default_value = "table", conflicts_with_all = ["update", "baseline", "audit", "mutants"])]
     format: Format,
 
     /// Write the verdicts as JUnit's XML too
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["update", "baseline", "audit", "mutants"])]
     junit: Option<PathBuf>,
 
-    /// Set the bounds of broken rows anew and add rows where a scene and method have none; needs --reason
-    #[arg(long, conflicts_with_all = ["quick", "scene", "method", "audit", "mutants", "junit"])]
+    /// Set the bounds of broken rows anew and add the rows that are missing; needs --reason
+    #[arg(long, conflicts_with_all = ["quick", "scene", "method", "audit", "mutants"])]
     update: bool,
 
     /// Why bounds move, for --update
     #[arg(long, value_name = "TEXT", requires = "update")]
     reason: Option<String>,
 
+    /// With --update: move broken rows whose bounds are theory's too
+    #[arg(long, requires = "update")]
+    theory: bool,
+
     /// Compare two results of --format csv
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["update", "audit", "mutants"])]
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"],
+          conflicts_with_all = ["update", "audit", "mutants", "quick", "scene", "method", "bounds"])]
     baseline: Option<Vec<PathBuf>>,
 
     /// Look at the bounds themselves
@@ -110,11 +115,13 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
     let progress = Progress::on_terminal("bounds", cli.quiet);
     let bounds = Bounds::read(&cli.bounds)?;
     if cli.update {
-        return ending(set_anew(cli, &bounds, &progress)?, true);
+        let update = update::update(&bounds, cli.reason.as_deref(), cli.theory, &progress)?;
+        write(&cli.bounds, &read::write(&update.rows)?)?;
+        return ending(update.diff(), update.kept.is_empty());
     }
     if cli.audit {
         let audit = audit::audit(&bounds, &progress)?;
-        return ending(audit.text(), audit.flagged().is_empty());
+        return ending(audit.text(), audit.is_good());
     }
     let rows = chosen(cli, &bounds)?;
     if cli.mutants {
@@ -131,12 +138,6 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
         Format::Json => format::json(&judged)?,
     };
     ending(text, !judged.iter().any(Judged::is_broken))
-}
-
-fn set_anew(cli: &Flags, bounds: &Bounds, progress: &Progress) -> Result<String, Error> {
-    let update = update::update(bounds, cli.reason.as_deref(), progress)?;
-    write(&cli.bounds, &read::write(&update.rows)?)?;
-    Ok(update.diff())
 }
 
 /// The rows that were asked for; a name of which there is none is wrong input.

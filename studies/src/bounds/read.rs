@@ -37,7 +37,8 @@ const HEAD: &str = "\
 #   stability-limit       largest stable step over the scene's time scale; 0: none, 1024: no limit found
 #   evaluations-per-step  of the force law, or of the torque
 # low <= number <= high, in the unit of the row. measured: the number when the bound was set.
-# reason: 'theory: ...', or 'measured x F: ...' for low = measured / F, high = measured * F. mutant: what is known to break it.
+# reason: 'theory: ...', or 'measured x F: ...' for low = measured / F, high = measured * F (low = 0 with 'x F, from 0'), or
+# 'measured +- W: ...' for low = measured - W, high = measured + W. mutant: what is known to break it.
 ";
 
 /// The longest run that a row may ask for.
@@ -46,11 +47,9 @@ pub const MOST_STEPS: u64 = 1 << 24;
 /// The rows of a file; `place` is its name, for errors.
 ///
 /// # Errors
-/// [`reports::Error::Csv`] with file, line and column: whatever is not a sorted file of bounds that name a run.
+/// With file, line and column (no column where a whole line is meant): whatever is not a sorted file of bounds that name a run.
 pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
-    let at = |line: u64, column: usize, message: String| {
-        Error::from(reports::Error::Csv { place: place.to_owned(), line, column: column as u64, message })
-    };
+    let at = |line: u64, column: usize, message: String| at(place, line, column, message);
     let text = utf8(bytes, place)?;
     let mut reader = ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
     let headers = reader.headers().map_err(|e| at(0, 0, e.to_string()))?.clone();
@@ -68,8 +67,7 @@ pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
                 return Err(at(line, 0, format!("the same number as in line {earlier}; delete one of the two")));
             }
             if *before > key {
-                let message = format!("out of order: it belongs before line {earlier}; --update sorts the file");
-                return Err(at(line, 1, message));
+                return Err(at(line, 0, format!("out of order: it belongs before line {earlier}; move it there")));
             }
         }
         rows.push((key, line, row));
@@ -77,6 +75,9 @@ pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
     let rows: Vec<Row> = rows.into_iter().map(|(_, _, row)| row).collect();
     let lines = text.lines().count() as u64;
     check_end(text, rows.len()).map_err(|message| at(lines.max(1), 0, message))?;
+    if rows.is_empty() {
+        return Err(at(lines, 0, "holds no row: a gate without rows holds nothing".to_owned()));
+    }
     Ok(rows)
 }
 
@@ -93,6 +94,27 @@ pub fn utf8<'a>(bytes: &'a [u8], place: &str) -> Result<&'a str, Error> {
         let message = format!("byte 0x{byte:02x} is not UTF-8; save the file as UTF-8");
         reports::Error::Csv { place: place.to_owned(), line, column, message }.into()
     })
+}
+
+/// What is wrong in one column of a line.
+pub(super) fn at(place: &str, line: u64, column: usize, message: String) -> Error {
+    if column == 0 {
+        return whole(place, line, message);
+    }
+    reports::Error::Csv { place: place.to_owned(), line, column: column as u64, message }.into()
+}
+
+/// What is wrong with a line as a whole.
+pub(super) fn whole(place: &str, line: u64, message: String) -> Error {
+    Error::plan(format!("{place}:{line}"), message)
+}
+
+/// An error of a whole line names no column.
+pub(super) fn without_column_zero(error: reports::Error) -> Error {
+    match error {
+        reports::Error::Csv { place, line, column: 0, message } => whole(&place, line, message),
+        other => other.into(),
+    }
 }
 
 /// Rows as the text of a file, sorted.
@@ -132,11 +154,12 @@ pub fn fields(row: &Row) -> [String; 13] {
     ]
 }
 
-fn end(rows: usize) -> String {
+/// The last line of a file that is whole.
+pub(super) fn end(rows: usize) -> String {
     format!("# end: {rows} rows")
 }
 
-fn check_end(text: &str, rows: usize) -> Result<(), String> {
+pub(super) fn check_end(text: &str, rows: usize) -> Result<(), String> {
     match text.lines().last() {
         Some(last) if last == end(rows) => Ok(()),
         Some(last) if last.starts_with("# end: ") => Err(format!(
@@ -237,8 +260,19 @@ fn check_run(row: &Row) -> Result<(), (&'static str, String)> {
             format!("{:?} is outside {:?} to {:?}: it never held", row.measured, row.low, row.high),
         ));
     }
-    if !(row.is_theory() || row.reason.starts_with("measured x ")) {
-        return Err(("reason", "give 'theory: the formula' or 'measured x FACTOR: what is known'".to_owned()));
+    check_reason(row).map_err(|message| ("reason", message))
+}
+
+/// What a bound may differ by from what its reason makes it: bounds are written with six digits.
+const SIX_DIGITS: f64 = 1e-5;
+
+/// Whether the reason is one, and the bounds are those that it makes.
+fn check_reason(row: &Row) -> Result<(), String> {
+    let Some([low, high]) = row.of_reason()? else { return Ok(()) };
+    for (name, is, made) in [("low", row.low, low), ("high", row.high, high)] {
+        if !((is - made).abs() <= SIX_DIGITS * made.abs().max(row.measured.abs())) {
+            return Err(format!("{name} is {is} where the reason makes it {made}"));
+        }
     }
     Ok(())
 }

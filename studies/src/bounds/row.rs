@@ -207,7 +207,41 @@ impl Row {
 
     /// Whether the reason is a formula and not a measurement.
     pub fn is_theory(&self) -> bool {
-        self.reason.starts_with("theory")
+        self.reason.starts_with("theory: ")
+    }
+
+    /// What the reason makes of `measured`: low and high; `None` for theory, whose bounds are in its formula.
+    ///
+    /// # Errors
+    /// What a reason should be.
+    pub fn of_reason(&self) -> Result<Option<[f64; 2]>, String> {
+        let form =
+            "give 'theory: the formula', 'measured x FACTOR: what is known' or 'measured +- WIDTH: what is known'";
+        let (how, why) = self.reason.split_once(": ").ok_or(form)?;
+        if why.trim().is_empty() {
+            return Err(form.to_owned());
+        }
+        let x = self.measured;
+        if how == "theory" {
+            return Ok(None);
+        }
+        if let Some(factor) = how.strip_prefix("measured x ") {
+            let from_zero = factor.strip_suffix(", from 0");
+            let text = from_zero.unwrap_or(factor);
+            let factor = text.parse().ok().filter(|f: &f64| f.is_finite() && *f > 1.0);
+            let factor = factor.ok_or_else(|| format!("'{text}' is no factor: give a number above 1"))?;
+            return Ok(Some([if from_zero.is_some() { 0.0 } else { x / factor }, x * factor]));
+        }
+        let text = how.strip_prefix("measured +- ").ok_or(form)?;
+        let width = text.parse().ok().filter(|w: &f64| w.is_finite() && *w >= 0.0);
+        let width = width.ok_or_else(|| format!("'{text}' is no width: give a number, 0 or above"))?;
+        Ok(Some([x - width, x + width]))
+    }
+
+    /// F of `measured x F: ...`.
+    pub fn factor(&self) -> Option<f64> {
+        let rest = self.reason.strip_prefix("measured x ")?;
+        rest.split([':', ',']).next()?.trim().parse().ok()
     }
 }
 

@@ -6,10 +6,10 @@ mod wrong;
 
 pub use show::{Death, deaths, summary};
 
-use integrator::Method;
 use integrator::methods::{MethodId, RigidStep};
 use integrator::pose::Fixed;
 use integrator::rigid_body::{AttitudeUpdate, BodyOmega, RigidBody, RigidModel, Storage, WorldOmega};
+use integrator::{Method, Model, State};
 
 use super::candidate::{Candidate, clock, counted, on_flat, turning};
 use super::stepper::{Ask, Stepper};
@@ -82,6 +82,28 @@ impl Mutant {
     pub fn from_id(id: &str) -> Result<Self, Error> {
         let known = || Self::ALL.iter().map(|mutant| mutant.id().to_owned());
         Self::ALL.iter().copied().find(|mutant| mutant.id() == id).ok_or_else(|| Error::unknown("mutant", id, known()))
+    }
+
+    /// What the reason of a row says that is about this fault and not about any.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Mutant::NotNormalised => &["|q| is restored"],
+            Mutant::WrongSide => &["q' = q (0, omega)"],
+            Mutant::MomentumRescaled => &["every step adds"],
+            Mutant::OldVelocity | Mutant::StaleForce => &["symplectic", "w h <= 2"],
+            Mutant::NewVelocity => &["|R(i z)|^2", "|1 + h l|^2"],
+            Mutant::EquationsNotSolved => &["A-stable"],
+            Mutant::AccumulatedTime => &["t = i h"],
+            Mutant::StageTime => &["order 4"],
+            Mutant::Curvature => &["brackets of SO(3)"],
+            Mutant::SingleAccumulation => &["rounding"],
+            Mutant::GyroscopicMissing | Mutant::GyroscopicSign => &["tau - omega x I"],
+            Mutant::GyroscopicAdded => &["without omega x I omega"],
+            Mutant::WrongFrame => &["= tau"],
+            Mutant::MassIgnored => &["F . (a t h", "x'' = -w^2 x", "w h <="],
+            Mutant::ForceSign => &["m g^2 h^2"],
+            Mutant::OneStepShort => &["evaluations make a step"],
+        }
     }
 
     /// Whether the fault can be made in a method, scene and precision.
@@ -231,22 +253,40 @@ impl Wrong {
         let Stepper::Turning(Scheme { update, .. }) = self.stepper else { return None };
         let method = NotNormalised { linear: update == AttitudeUpdate::Linear };
         let model = WorldOmega::<_>::new(counted(motion));
-        let h = clock.end_s / clock.steps as f64;
-        let mut s = model.state(&motion.exact(0.0));
-        let mut seen = vec![(0, Observation::of_body(&model, &s))];
-        let mut failed_step = None;
-        for i in 1..=clock.steps {
-            s = method.step(&model, (i - 1) as f64 * h, h, s);
-            if !s.is_finite() {
-                failed_step = Some(i);
-                break;
-            }
-            if i % clock.stride == 0 || i == clock.steps {
-                seen.push((i, Observation::of_body(&model, &s)));
-            }
-        }
-        Some(Seen { seen, failed_step }.trajectory(false, model.body().evaluations()))
+        let start = model.state(&motion.exact(0.0));
+        let seen = driven(&method, &model, start, clock, NEVER, |s| Observation::of_body(&model, s));
+        Some(seen.trajectory(false, model.body().evaluations()))
     }
+}
+
+/// No run has as many steps.
+const NEVER: u64 = u64::MAX;
+
+/// The driver, whose state is settled after as many steps as one likes.
+fn driven<M: Model<f64>, A: Method<f64, M>>(
+    method: &A,
+    model: &M,
+    start: State<M::Config>,
+    clock: Clock,
+    settle_every: u64,
+    observe: impl Fn(&State<M::Config>) -> Observation,
+) -> Seen {
+    let h = clock.end_s / clock.steps as f64;
+    let mut s = start;
+    let mut seen = vec![(0, observe(&s))];
+    for i in 1..=clock.steps {
+        s = model.contact(&s, method.step(model, (i - 1) as f64 * h, h, s));
+        if !s.is_finite() {
+            return Seen { seen, failed_step: Some(i) };
+        }
+        if i % settle_every == 0 {
+            s = s.settled();
+        }
+        if i % clock.stride == 0 || i == clock.steps {
+            seen.push((i, observe(&s)));
+        }
+    }
+    Seen { seen, failed_step: None }
 }
 
 /// A built-in scheme on a body with wrong loads.
@@ -282,4 +322,64 @@ fn without_mass(scene: &dyn AnyScene) -> Option<Box<dyn AnyScene>> {
     let id = other.id();
     other.scene_mut().set(id, "mass", "1").ok()?;
     Some(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use integrator::drive::SETTLE_EVERY;
+    use integrator::methods::SemiImplicitEuler;
+
+    use super::*;
+
+    const RIGHT_RK4: WrongRk4 = WrongRk4 { stage_times: true, curvature: true };
+
+    /// 200 steps, which settle three times.
+    fn ask(scene: &dyn AnyScene) -> Ask<'_> {
+        Ask { scene, precision: Precision::F64, end_s: 1.0, steps: 200, stride: 1 }
+    }
+
+    fn built_in_run(method: &str, ask: &Ask<'_>) -> Trajectory {
+        Stepper::from_id(method, ask.scene).expect("a method").run(ask).expect("it runs")
+    }
+
+    fn assert_same(a: &Trajectory, b: &Trajectory) {
+        assert_eq!(a.seen.len(), 201);
+        assert_eq!(format!("{:?}", a.seen), format!("{:?}", b.seen));
+        assert_eq!((a.outcome, a.failed_step), (b.outcome, b.failed_step));
+    }
+
+    // Fails if: the wrong RK4 has another fault than the one that it is named for.
+    #[test]
+    fn the_wrong_rk4_with_its_faults_switched_off_is_rk4_bit_for_bit() {
+        let flat = scenes::by_id("forced-oscillator").expect("a scene");
+        let clock_of = |ask: &Ask<'_>| clock(ask).expect("f64");
+        let asked = ask(flat.as_ref());
+        let AnyMotion::One(motion) = flat.any_motion() else { panic!("one coordinate") };
+        assert_same(&on_flat(&RIGHT_RK4, motion, clock_of(&asked)), &built_in_run("rk4", &asked));
+        let body = scenes::by_id("heavy-top").expect("a scene");
+        let asked = ask(body.as_ref());
+        let AnyMotion::Pivoted(motion) = body.any_motion() else { panic!("a pivoted body") };
+        let world = turning(&RIGHT_RK4, &WorldOmega::<_>::new(counted(motion)), motion, clock_of(&asked));
+        assert_same(&world, &built_in_run("rk4/world-omega", &asked));
+        let inside = turning(&RIGHT_RK4, &BodyOmega::<_>::new(counted(motion)), motion, clock_of(&asked));
+        assert_same(&inside, &built_in_run("rk4/body-omega", &asked));
+    }
+
+    // Fails if: the driver that never settles differs in anything else.
+    #[test]
+    fn the_driver_that_settles_as_it_should_is_the_driver_bit_for_bit() {
+        let body = scenes::by_id("heavy-top").expect("a scene");
+        let asked = ask(body.as_ref());
+        let AnyMotion::Pivoted(motion) = body.any_motion() else { panic!("a pivoted body") };
+        let model = WorldOmega::<_>::new(counted(motion));
+        let run = |every: u64| {
+            let start = model.state(&motion.exact(0.0));
+            let clock = clock(&asked).expect("f64");
+            let observe = |s: &_| Observation::of_body(&model, s);
+            driven(&SemiImplicitEuler, &model, start, clock, every, observe).trajectory(false, 0)
+        };
+        let right = built_in_run("semi-implicit-euler/world-omega", &asked);
+        assert_same(&run(SETTLE_EVERY), &right);
+        assert_ne!(format!("{:?}", run(NEVER).seen), format!("{:?}", right.seen));
+    }
 }

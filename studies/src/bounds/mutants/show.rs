@@ -4,7 +4,6 @@ use reports::Table;
 
 use super::Mutant;
 use crate::bounds::check::{Judged, judge};
-use crate::bounds::row::Subject;
 use crate::bounds::{Bounds, Row};
 use crate::error::Error;
 use crate::sweep::Progress;
@@ -21,22 +20,41 @@ pub struct Death {
 }
 
 impl Death {
-    /// Whether no row that names the mutant sees it, or one does not that says it does.
+    /// Whether no row names the mutant, or one names it and does not see it.
     pub fn fails(&self) -> bool {
         self.killers.is_empty() || !self.spared.is_empty()
     }
 
-    /// The row that shows it best: one whose bounds are theory's, or else one of a balance with a law for every step.
+    /// What became of it, in words.
+    pub fn verdict(&self) -> &'static str {
+        match (self.killers.is_empty(), self.spared.is_empty()) {
+            (true, true) => "✗ no row names it",
+            (true, false) => "✗ survives",
+            (false, false) => "✗ spared by a row",
+            (false, true) => "✓ killed",
+        }
+    }
+
+    /// The row that shows it best: one whose reason names what is wrong, theory before measurement, then other rows of theory.
     pub fn killer(&self) -> Option<&Judged> {
-        let rank = |row: &Row| match (row.is_theory(), row.quantity) {
-            (true, Subject::Evaluations) => 1,
-            (true, _) => 0,
-            (false, Subject::Balance(_)) if row.reason.contains("every step adds") => 2,
-            _ => 3,
+        let rank = |row: &Row| {
+            let names_it = self.mutant.words().iter().any(|word| row.reason.contains(word));
+            let is_general = GENERAL.iter().any(|word| row.reason.contains(word));
+            match (names_it, row.is_theory(), is_general) {
+                (true, true, _) => 0,
+                (true, false, _) => 1,
+                (false, true, false) => 2,
+                (false, true, true) => 3,
+                _ => 4,
+            }
         };
         self.killers.iter().min_by_key(|one| rank(&one.row))
     }
 }
+
+/// Reasons that would be given of any method.
+const GENERAL: [&str; 3] =
+    ["the method's order on a smooth problem", "the method's local error, propagated", "evaluations make a step"];
 
 /// Runs every mutant against the rows among these that name it.
 ///
@@ -58,8 +76,7 @@ pub fn summary(deaths: &[Death]) -> String {
     let headers = ["mutant", "verdict", "killed by", "measured", "bound", "reason", "rows"];
     let mut table = Table::new(&headers, &["rows"]);
     for death in deaths {
-        let verdict = if death.killers.is_empty() { "✗ survives" } else { "✓ killed" };
-        let mut cells = vec![format!("{}: {}", death.mutant.id(), death.mutant.about()), verdict.to_owned()];
+        let mut cells = vec![format!("{}: {}", death.mutant.id(), death.mutant.about()), death.verdict().to_owned()];
         if let Some(Judged { row, measured }) = death.killer() {
             let bound = format!("{:.6e} … {:.6e}", row.low, row.high);
             cells.extend([row.name(), measured.text(), bound, row.reason.clone(), death.killers.len().to_string()]);

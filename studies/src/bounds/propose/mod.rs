@@ -3,19 +3,23 @@
 mod balances;
 mod errors;
 
+use std::collections::HashSet;
+
 use faer::fx128;
 use integrator::methods::MethodId;
 use integrator::rigid_body::Storage;
 
 use crate::bounds::candidate::Candidate;
+use crate::bounds::known::Known;
 use crate::bounds::measure::{Measured, Runs, UNLIMITED};
 use crate::bounds::mutants::Mutant;
-use crate::bounds::row::{Kind, Row, Subject};
+use crate::bounds::row::{Key, Kind, Row, Subject};
 use crate::bounds::stepper::Stepper;
 use crate::observation::Quantity;
 use crate::run::Precision;
 use crate::scene::{AnyScene, ExpectedOrder, StabilityLimit, Theory};
 use crate::stability::limits::number;
+use crate::sweep::{Progress, in_parallel};
 
 /// A bound on a measured error is the measured number divided and multiplied by this: the same bits come out on every machine,
 /// and what a harmless change of the arithmetic moves is far less.
@@ -29,8 +33,32 @@ const HALVINGS: u32 = 5;
 /// Halvings at which a f32 run is bounded: its rounding shows there.
 const SINGLE_HALVINGS: u32 = 8;
 
+/// The rows that would be written for the catalogue and are not among these: another kind, precision, number of steps or end
+/// is another row.
+pub fn missing(known: &Known, rows: &[Row], progress: &Progress) -> Vec<Row> {
+    let have: HashSet<Key> = rows.iter().map(Row::key).collect();
+    let steppers = |scene| Stepper::all(scene).into_iter().map(move |stepper| (scene, stepper));
+    let all: Vec<(&dyn AnyScene, Stepper)> = known.in_order().into_iter().flat_map(steppers).collect();
+    let cost = |(scene, stepper): &(&dyn AnyScene, Stepper)| {
+        scene.scene().info().coarsest_steps * if stepper.is_implicit() { 50 } else { 1 }
+    };
+    let of = |&(scene, stepper): &(&dyn AnyScene, Stepper)| {
+        let mut rows = without_mutants(scene, stepper);
+        rows.retain(|row| !have.contains(&row.key()));
+        name_mutants(scene, stepper, &mut rows);
+        rows
+    };
+    in_parallel(&all, cost, progress, of).concat()
+}
+
 /// Every bound of a method on a scene.
 pub fn rows(scene: &dyn AnyScene, stepper: Stepper) -> Vec<Row> {
+    let mut rows = without_mutants(scene, stepper);
+    name_mutants(scene, stepper, &mut rows);
+    rows
+}
+
+fn without_mutants(scene: &dyn AnyScene, stepper: Stepper) -> Vec<Row> {
     let maker = Maker {
         scene,
         stepper,
@@ -50,7 +78,6 @@ pub fn rows(scene: &dyn AnyScene, stepper: Stepper) -> Vec<Row> {
     rows.extend(maker.balances(&rows));
     rows.extend(maker.limit());
     rows.extend(maker.summed_time());
-    name_mutants(scene, stepper, &mut rows);
     rows
 }
 
@@ -62,7 +89,7 @@ struct Maker<'a> {
 }
 
 /// Six digits are enough for a bound.
-fn six(x: f64) -> f64 {
+pub(in crate::bounds) fn six(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
 
@@ -173,13 +200,13 @@ fn between(row: Row, measured: f64, low: f64, high: f64, reason: &str) -> Row {
 }
 
 /// Measured / factor to measured * factor.
-pub(in crate::bounds) fn around(row: Row, measured: f64, factor: f64, why: &str) -> Row {
+fn around(row: Row, measured: f64, factor: f64, why: &str) -> Row {
     let reason = format!("measured x {factor}: {why}");
     between(row, measured, six(measured / factor), six(measured * factor), &reason)
 }
 
 /// Rounding: 0 to measured * factor. A number below `least`, one rounding of it, is luck: one rounding is granted.
-pub(in crate::bounds) fn from_zero(row: Row, measured: f64, least: f64, why: &str) -> Row {
+fn from_zero(row: Row, measured: f64, least: f64, why: &str) -> Row {
     if measured < least {
         let reason = format!("theory: no error but the last rounding, at most {ROUNDING} eps; {why}");
         return between(row, measured, 0.0, six(least * ROUNDING), &reason);
@@ -189,6 +216,9 @@ pub(in crate::bounds) fn from_zero(row: Row, measured: f64, least: f64, why: &st
 
 /// Names with each row the first mutant that breaks it.
 fn name_mutants(scene: &dyn AnyScene, stepper: Stepper, rows: &mut [Row]) {
+    if rows.is_empty() {
+        return;
+    }
     let mut open: Vec<usize> = (0..rows.len()).collect();
     // Most rows that see one fault of the gyroscopic term see the other: the velocities are for the sign.
     let left_to_sign = |row: &Row, mutant| {
