@@ -154,6 +154,9 @@ pub(super) struct Entry {
     pub(super) found: Result<Pick, Search>,
 }
 
+/// A run that does what is asked, with the largest stable step.
+type Steady = Result<(Tried, Limit), Search>;
+
 /// A question about one scene.
 pub(super) struct Asked<'a> {
     pub(super) need: Need<'a>,
@@ -184,7 +187,7 @@ fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> Resu
         let ways = ways(&asked, selection)?;
         let entries = match question.error {
             Some(_) => by_error(&asked, selection, ways),
-            None => by_budget(&asked, ways),
+            None => by_budget(&asked, &ways),
         };
         let pick = speak::answer(&asked, entries, &mut advice.text);
         advice.possible &= pick.is_some();
@@ -234,12 +237,7 @@ fn by_error(asked: &Asked<'_>, selection: &Selection, ways: Vec<(Candidate, Prec
 
 /// A step with the largest stable one. A loop of frames goes on after the run: in it a step that is not stable gives way to the
 /// largest that is, if that and finer ones keep the error.
-fn stable(
-    asked: &Asked<'_>,
-    candidate: Candidate,
-    precision: Precision,
-    tried: Tried,
-) -> Result<(Tried, Limit), Search> {
+fn stable(asked: &Asked<'_>, candidate: Candidate, precision: Precision, tried: Tried) -> Steady {
     let Need { scene, end_s, unit, error, .. } = asked.need;
     let limit = limit(scene, candidate, precision, end_s);
     if asked.frames.is_none() || limit.allows(end_s / tried.steps as f64) {
@@ -272,7 +270,7 @@ fn single_step(asked: &Asked<'_>, candidate: Candidate, precision: Precision) ->
 }
 
 /// Times what was found, and runs each with its step doubled.
-fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Result<(Tried, Limit), Search>)>) -> Vec<Entry> {
+fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec<Entry> {
     let step = |tried: &Tried| asked.need.end_s / tried.steps as f64;
     let mut entries: Vec<Entry> = found
         .into_iter()
@@ -312,7 +310,7 @@ fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u6
 
 /// The least error of every way within the budget: the steps that it pays for, or half of them and half again where rounding
 /// makes more of them worse.
-fn by_budget(asked: &Asked<'_>, ways: Vec<(Candidate, Precision)>) -> Vec<Entry> {
+fn by_budget(asked: &Asked<'_>, ways: &[(Candidate, Precision)]) -> Vec<Entry> {
     let h_s = asked.need.scene.scene().info().horizon_s / TIMED_STEPS as f64;
     let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(asked, c, p, TIMED_STEPS, h_s)).collect();
     let first = costs(asked.need.scene, &tasks, Care::FULL);
@@ -354,7 +352,7 @@ fn affordable(asked: &Asked<'_>, cost: Option<Cost>, dearer: f64) -> u64 {
     (steps.min(MOST_STEPS as f64) as u64) / asked.need.unit * asked.need.unit
 }
 
-fn best_of_halvings(asked: &Asked<'_>, way: (Candidate, Precision), steps: u64) -> Result<(Tried, Limit), Search> {
+fn best_of_halvings(asked: &Asked<'_>, way: (Candidate, Precision), steps: u64) -> Steady {
     let Need { scene, end_s, unit, .. } = asked.need;
     if steps < unit {
         return Err(Search::OverBudget);
