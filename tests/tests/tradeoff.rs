@@ -258,3 +258,48 @@ fn sweeps_are_ordered_and_complete() {
     assert_eq!(sweeps.iter().map(Vec::len).sum::<usize>(), rows.len());
     assert!(sweeps.iter().all(|sweep| sweep.is_sorted_by_key(|row| row.steps)));
 }
+
+/// Three scenes on which RK4 is cheaper, dearer, and not to be compared: there both sweeps end above the level.
+#[test]
+fn what_two_sweeps_leave_open_is_not_counted() {
+    let template = of_scene("oscillator").into_iter().find(|row| row.method == "semi-implicit-euler").expect("a run");
+    let sweep = |scene: &str, method: &str, evaluations_at_level: f64| -> Vec<Row> {
+        (3..10)
+            .map(|k| Row {
+                scene: scene.to_owned(),
+                method: method.to_owned(),
+                precision: Precision::F64,
+                steps: 1 << k,
+                h_s: 1.0 / f64::from(1_u32 << k),
+                evaluations: 1 << k,
+                error: Some(1e-2 * evaluations_at_level / f64::from(1_u32 << k)),
+                ..template.clone()
+            })
+            .collect()
+    };
+    // The runs have 8 to 512 evaluations: 2000 are beyond the sweep. Verlet makes the level one that is reached.
+    let cases = [("cheap", 100.0, 50.0), ("dear", 20.0, 60.0), ("open", 2000.0, 4000.0), ("bound", 20.0, 2000.0)];
+    let rows: Vec<Row> = cases
+        .iter()
+        .flat_map(|&(scene, own, rk4)| {
+            let methods = [("semi-implicit-euler", own), ("rk4", rk4), ("velocity-verlet", 30.0)];
+            methods.map(|(method, at)| sweep(scene, method, at)).concat()
+        })
+        .collect();
+    let line = |rows: &[Row]| {
+        let tables = Tradeoff::tables(rows).expect("rows have tables");
+        let csv = &tables.iter().find(|table| table.name == "tradeoff-question").expect("the question").csv;
+        let mut lines = csv.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let names = lines.next().expect("a header");
+        let level = lines.find(|l| l[0].parse() == Ok(1e-2) && l[1] == "evaluations").expect("the level");
+        let of = |name: &str| level[names.iter().position(|n| n == name).expect("a column")].clone();
+        ["scenes", "rk4_known", "semi_implicit_beats_rk4", "median_rk4_over_semi_implicit"].map(of)
+    };
+    // Factors 0.5, 3, unknown and > 25.6: the median of the three known is 3.
+    let [scenes, known, beats, median] = line(&rows);
+    assert_eq!([scenes, known, beats], ["4", "3", "2"]);
+    assert!((median.parse::<f64>().expect("a number") - 3.0).abs() < 1e-12, "{median}");
+    // Without the dear one 0.5 and > 25.6 are left, and the upper middle is a bound.
+    let rest: Vec<Row> = rows.into_iter().filter(|row| row.scene != "dear").collect();
+    assert_eq!(line(&rest), ["3", "2", "1", ""]);
+}

@@ -118,6 +118,26 @@ impl Common {
         Ok(Selection { progress: Progress::on_terminal("", self.quiet), ..self.plan.selection()? })
     }
 
+    /// Refuses what a question beside it leaves no room for: an answer is a text, and runs what it needs.
+    ///
+    /// # Errors
+    /// The first flag that would go unheard.
+    pub fn answers(&self) -> Result<(), Error> {
+        let (form, files, runs) =
+            ("an answer has no such form", "an answer writes no files", "an answer runs what it needs");
+        let given = [
+            ("--json", self.json, form),
+            ("--markdown", self.markdown, form),
+            ("--out", self.out.is_some(), files),
+            ("--figures-only", self.figures_only, files),
+            ("--format", self.format != Format::default(), files),
+            ("--steps", !self.plan.steps.is_empty(), runs),
+            ("--from", self.from.is_some(), runs),
+        ];
+        let unheard = given.into_iter().find(|(_, is_given, _)| *is_given);
+        unheard.map_or(Ok(()), |(flag, _, why)| Err(Error::plan(flag, format!("{why}; leave it out"))))
+    }
+
     /// The same with the plan of the file, where one is named.
     fn with_plan_file(mut self) -> Result<Self, Error> {
         if let Some(path) = &self.plan_file {

@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::observation::Value;
 use crate::run::{Outcome, Precision, Run, Trajectory};
 use crate::scene::AnyScene;
-use crate::study::Selection;
+use crate::study::{Selection, short};
 
 /// A step, or a rate, to be judged: positive numbers, as the flags are read.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -48,6 +48,7 @@ pub fn ask(common: &Common, question: &Question) -> Option<Result<Ending, Error>
     let asked =
         question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
     asked.then(|| {
+        common.answers()?;
         let Answer { text, stable } = answer(&common.selection()?, *question);
         Ok(Ending { text, note: None, code: u8::from(!stable) })
     })
@@ -87,7 +88,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     let theory = linear.and_then(limits::number);
     let found = match linear {
         Some(limit) => limits::measure(stepping, limit),
-        None => measure_nonlinear(stepping.scene, |end_s, steps| {
+        None => measure_nonlinear(stepping.scene, 0.0, |end_s, steps| {
             Some(stepping.scene.run(&Run::new(stepping.method, stepping.precision, end_s, steps), 1))
         }),
     };
@@ -102,19 +103,21 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     }
     let limit_s = match found {
         Found::NoStep { tried_s } => {
-            line(format!("  measured: no stable step; {tried_s:.6} s fails already"));
+            line(format!("  measured: no stable step; {} s fails already", significant(tried_s)));
             0.0
         }
         Found::Bracket { low_s, high_s } => {
             line(format!(
-                "  measured: holds at {low_s:.6} s, fails at {high_s:.6} s (h / time scale {:.5} .. {:.5})",
-                low_s / scale,
-                high_s / scale
+                "  measured: holds at {} s, fails at {} s (h / time scale {} .. {})",
+                significant(low_s),
+                significant(high_s),
+                significant(low_s / scale),
+                significant(high_s / scale)
             ));
             theory.filter(|t| low_s <= *t && *t <= high_s).unwrap_or(low_s)
         }
         Found::Unlimited { tried_s } => {
-            line(format!("  measured: no limit; {tried_s:.6} s holds still"));
+            line(format!("  measured: no limit found; {} s holds still", significant(tried_s)));
             f64::INFINITY
         }
     };
@@ -129,7 +132,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
         let margin = if limit_s == 0.0 || limit_s.is_infinite() {
             String::new()
         } else {
-            format!(", {:.4} of the limit", step / limit_s)
+            format!(", {} of the limit", short(Some(step / limit_s)))
         };
         let _ =
             writeln!(answer.text, "  step {step} s: {verdict}{margin}{}", substeps_words(step, limit_s, "this step"));
@@ -141,13 +144,19 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     }
 }
 
+/// Six significant digits, without the zeros behind them.
+pub(crate) fn significant(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e7).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
 fn seconds(limit: f64) -> String {
     if limit == 0.0 {
         "no step is stable".to_owned()
     } else if limit.is_infinite() {
         "every step is stable".to_owned()
     } else {
-        format!("h <= {limit:.6} s")
+        format!("h <= {} s", significant(limit))
     }
 }
 
@@ -166,15 +175,22 @@ fn substeps_words(h_s: f64, limit_s: f64, of: &str) -> String {
 }
 
 /// Length of a run on a scene without a linear theory, in natural time scales.
-const TIME_SCALES: f64 = 64.0;
+pub(crate) const TIME_SCALES: f64 = 64.0;
 /// A run has failed whose coordinates exceed the largest of the exact motion by this factor.
 const LEAVES: f64 = 4.0;
 
-/// The largest step with which a scene stays within a multiple of the range of its exact motion; `run` takes so many steps to
-/// the end and shows every one.
-pub(crate) fn measure_nonlinear(scene: &dyn AnyScene, run: impl Fn(f64, u64) -> Option<Trajectory>) -> Found {
+/// Steps of the longest run that stability is measured with.
+const MOST_STEPS: f64 = (1_u64 << 20) as f64;
+
+/// The largest step with which a scene stays within a multiple of the range of its exact motion, over 64 time scales or the
+/// duration asked for, if that is longer; `run` takes so many steps to the end and shows how it went.
+pub(crate) fn measure_nonlinear(
+    scene: &dyn AnyScene,
+    asked_s: f64,
+    run: impl Fn(f64, u64) -> Option<Trajectory>,
+) -> Found {
     let scale = scene.scene().info().time_scale_s;
-    let end = TIME_SCALES * scale;
+    let end = asked_s.max(TIME_SCALES * scale);
     let sizes = |seen: &crate::observation::Observation| -> Vec<f64> {
         seen.values
             .iter()
@@ -201,5 +217,5 @@ pub(crate) fn measure_nonlinear(scene: &dyn AnyScene, run: impl Fn(f64, u64) -> 
                 .iter()
                 .all(|(_, seen)| sizes(seen).iter().zip(&range).all(|(x, most)| *x <= LEAVES * most))
     };
-    bracket(scale / 64.0, 64.0 * scale, 0.01, holds)
+    bracket((scale / 64.0).max(end / MOST_STEPS), 64.0 * scale, 0.01, holds)
 }

@@ -4,7 +4,8 @@ use clap::Args;
 
 use super::candidate::{Candidate, Span, candidates};
 use super::clock::{Care, Cost, Task, costs};
-use super::search::{MOST_STEPS, Need, Search, Tried, attempt, search};
+use super::limit::{Limit, limit};
+use super::search::{MOST_STEPS, Need, Search, Tried, attempt, finer, search};
 use super::speak;
 use super::truth::Truth;
 use crate::cli::{Common, Ending};
@@ -55,7 +56,9 @@ pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
     }
     (question != Question::default()).then(|| {
         question.check(!common.plan.scene.is_empty())?;
-        let advice = advise(&common.selection()?, question)?;
+        common.answers()?;
+        let (selection, is_chosen) = (common.selection()?, !common.plan.precision.is_empty());
+        let advice = advise_in(&selection, question, is_chosen)?;
         Ok(Ending { text: advice.text, note: None, code: u8::from(!advice.possible) })
     })
 }
@@ -84,6 +87,8 @@ pub struct Pick {
     pub twice: Tried,
     /// Step, s.
     pub h_s: f64,
+    /// The largest stable step.
+    pub limit: Limit,
     /// Time of a step; `None` for what is not timed.
     pub cost: Option<Cost>,
 }
@@ -149,11 +154,16 @@ pub(super) struct Entry {
     pub(super) found: Result<Pick, Search>,
 }
 
+/// A run that does what is asked, with the largest stable step.
+type Steady = Result<(Tried, Limit), Search>;
+
 /// A question about one scene.
 pub(super) struct Asked<'a> {
     pub(super) need: Need<'a>,
     pub(super) frames: Option<u64>,
     pub(super) question: Question,
+    /// Whether double-double was left out, because no arithmetic was chosen.
+    pub(super) is_short: bool,
 }
 
 /// Answers for every chosen scene with every chosen method, in f32 and f64 unless one arithmetic is chosen.
@@ -161,6 +171,11 @@ pub(super) struct Asked<'a> {
 /// # Errors
 /// A question that cannot be answered.
 pub fn advise(selection: &Selection, question: Question) -> Result<Advice, Error> {
+    advise_in(selection, question, selection.precisions.len() < Precision::ALL.len())
+}
+
+/// The same; where the arithmetic `is_chosen`, double-double is tried too, if it is among them.
+fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> Result<Advice, Error> {
     question.check(!selection.scenes.is_empty())?;
     let mut advice = Advice { text: String::new(), possible: true, picks: Vec::new() };
     for scene in &selection.scenes {
@@ -168,10 +183,11 @@ pub fn advise(selection: &Selection, question: Question) -> Result<Advice, Error
         let truth = Truth::new(scene.as_ref(), end_s, frames.map_or(LOOKS, looks_at_frames));
         let error = question.error.unwrap_or(f64::INFINITY);
         let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: frames.unwrap_or(2) };
-        let asked = Asked { need, frames, question };
+        let asked = Asked { need, frames, question, is_short: !is_chosen };
+        let ways = ways(&asked, selection)?;
         let entries = match question.error {
-            Some(_) => by_error(&asked, selection),
-            None => by_budget(&asked, selection),
+            Some(_) => by_error(&asked, selection, ways),
+            None => by_budget(&asked, &ways),
         };
         let pick = speak::answer(&asked, entries, &mut advice.text);
         advice.possible &= pick.is_some();
@@ -185,27 +201,60 @@ fn looks_at_frames(frames: u64) -> u64 {
     (LOOKS / 2..=2 * LOOKS).rev().find(|looks| frames.is_multiple_of(*looks)).unwrap_or(LOOKS)
 }
 
-/// Every way that can be timed, if there is one.
-fn ways(asked: &Asked<'_>, selection: &Selection) -> Vec<(Candidate, Precision)> {
-    let all = selection.precisions.len() == Precision::ALL.len();
-    let precisions = selection.precisions.iter().filter(|p| !all || **p != Precision::DoubleDouble);
+/// Every way that can be timed, if there is one: a budget cannot do without.
+fn ways(asked: &Asked<'_>, selection: &Selection) -> Result<Vec<(Candidate, Precision)>, Error> {
+    let precisions = selection.precisions.iter().filter(|p| !asked.is_short || **p != Precision::DoubleDouble);
     let ways: Vec<(Candidate, Precision)> = precisions
         .flat_map(|&p| candidates(asked.need.scene, &selection.methods).into_iter().map(move |c| (c, p)))
         .collect();
     let timed: Vec<_> = ways.iter().copied().filter(|(c, p)| c.is_timed(*p)).collect();
-    if timed.is_empty() { ways } else { timed }
+    match (ways.first(), asked.question.budget_us) {
+        (Some((candidate, precision)), Some(_)) if timed.is_empty() => {
+            let message = format!(
+                "{} is not timed in {}; choose another arithmetic, such as --precision f64, or ask with --error alone",
+                candidate.label(),
+                precision.id()
+            );
+            Err(plan("--budget-us", message))
+        }
+        _ => Ok(if timed.is_empty() { ways } else { timed }),
+    }
 }
 
-fn by_error(asked: &Asked<'_>, selection: &Selection) -> Vec<Entry> {
-    let ways = ways(asked, selection);
+fn by_error(asked: &Asked<'_>, selection: &Selection, ways: Vec<(Candidate, Precision)>) -> Vec<Entry> {
     let weight = |(c, _): &(Candidate, Precision)| 5 - u64::from(c.scheme.order().min(4));
     let searched = in_parallel(&ways, weight, &selection.progress, |&(candidate, precision)| {
         match search(&asked.need, candidate, precision) {
-            Search::Found(tried) => Ok(single_step(asked, candidate, precision).unwrap_or(tried)),
+            Search::Found(tried) => {
+                let tried = single_step(asked, candidate, precision).unwrap_or(tried);
+                stable(asked, candidate, precision, tried)
+            }
             other => Err(other),
         }
     });
     timed(asked, ways.into_iter().zip(searched).collect())
+}
+
+/// A step with the largest stable one. A loop of frames goes on after the run: in it a step that is not stable gives way to the
+/// largest that is, if that and finer ones keep the error.
+fn stable(asked: &Asked<'_>, candidate: Candidate, precision: Precision, tried: Tried) -> Steady {
+    let Need { scene, end_s, unit, error, .. } = asked.need;
+    let limit = limit(scene, candidate, precision, end_s);
+    if asked.frames.is_none() || limit.allows(end_s / tried.steps as f64) {
+        return Ok((tried, limit));
+    }
+    let none = Search::Unstable { limit_s: limit.h_s };
+    let m = (end_s / limit.h_s / unit as f64 * (1.0 - 4.0 * f64::EPSILON)).ceil();
+    if m * unit as f64 > MOST_STEPS as f64 {
+        return Err(none);
+    }
+    let (m, run) = (m as u64, |m: u64| attempt(&asked.need, candidate, precision, m * unit));
+    let keeps = |tried: &Tried| tried.error.is_some_and(|e| e <= error);
+    let (tried, finer) = (run(m), finer(m));
+    if !keeps(&tried) || !finer.iter().all(|&m| keeps(&run(m))) {
+        return Err(none);
+    }
+    Ok((Tried { finer: finer.len(), ..tried }, limit))
 }
 
 /// One step over the whole run, where even that keeps the error.
@@ -214,25 +263,25 @@ fn single_step(asked: &Asked<'_>, candidate: Candidate, precision: Precision) ->
         let tried = attempt(&asked.need, candidate, precision, steps);
         tried.error.is_some_and(|e| e <= asked.need.error).then_some(tried)
     };
-    if asked.frames.is_some() {
-        None
-    } else {
-        keeps(1).filter(|_| [2, 3, 4, 5, 8].map(keeps).iter().all(Option::is_some))
-    }
+    let finer = [2, 3, 4, 5, 8];
+    let single = if asked.frames.is_some() { None } else { keeps(1) };
+    let borne_out = single.filter(|_| finer.map(keeps).iter().all(Option::is_some));
+    borne_out.map(|tried| Tried { finer: finer.len(), ..tried })
 }
 
 /// Times what was found, and runs each with its step doubled.
-fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Result<Tried, Search>)>) -> Vec<Entry> {
+fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec<Entry> {
     let step = |tried: &Tried| asked.need.end_s / tried.steps as f64;
     let mut entries: Vec<Entry> = found
         .into_iter()
         .map(|((candidate, precision), found)| {
-            let pick = |tried: Tried| Pick {
+            let pick = |(tried, limit): (Tried, Limit)| Pick {
                 candidate,
                 precision,
                 tried,
                 twice: attempt(&asked.need, candidate, precision, tried.steps.div_ceil(2)),
                 h_s: step(&tried),
+                limit,
                 cost: None,
             };
             Entry { candidate, precision, found: found.map(pick) }
@@ -261,8 +310,7 @@ fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u6
 
 /// The least error of every way within the budget: the steps that it pays for, or half of them and half again where rounding
 /// makes more of them worse.
-fn by_budget(asked: &Asked<'_>, selection: &Selection) -> Vec<Entry> {
-    let ways = ways(asked, selection);
+fn by_budget(asked: &Asked<'_>, ways: &[(Candidate, Precision)]) -> Vec<Entry> {
     let h_s = asked.need.scene.scene().info().horizon_s / TIMED_STEPS as f64;
     let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(asked, c, p, TIMED_STEPS, h_s)).collect();
     let first = costs(asked.need.scene, &tasks, Care::FULL);
@@ -284,7 +332,7 @@ fn by_budget(asked: &Asked<'_>, selection: &Selection) -> Vec<Entry> {
             entry.found = one.remove(0).found;
         }
         if entry.found.as_ref().ok().and_then(|pick| over_budget(asked, pick)).is_some_and(|over| over > 1.0) {
-            entry.found = Err(Search::TooMany { about: None });
+            entry.found = Err(Search::OverBudget);
         }
     }
     entries
@@ -304,13 +352,21 @@ fn affordable(asked: &Asked<'_>, cost: Option<Cost>, dearer: f64) -> u64 {
     (steps.min(MOST_STEPS as f64) as u64) / asked.need.unit * asked.need.unit
 }
 
-fn best_of_halvings(asked: &Asked<'_>, way: (Candidate, Precision), steps: u64) -> Result<Tried, Search> {
-    let unit = asked.need.unit;
-    let ladder = (0..).map(|k| (steps >> k) / unit * unit).take_while(|&steps| steps >= unit);
-    let tried =
-        ladder.map(|steps| attempt(&asked.need, way.0, way.1, steps)).take(8).filter(|tried| tried.error.is_some());
+fn best_of_halvings(asked: &Asked<'_>, way: (Candidate, Precision), steps: u64) -> Steady {
+    let Need { scene, end_s, unit, .. } = asked.need;
+    if steps < unit {
+        return Err(Search::OverBudget);
+    }
+    let limit = limit(scene, way.0, way.1, end_s);
+    let is_stable = |steps: &u64| asked.frames.is_none() || limit.allows(end_s / *steps as f64);
+    if !is_stable(&steps) {
+        return Err(Search::Unstable { limit_s: limit.h_s });
+    }
+    let ladder = (0..8).map(|k| (steps >> k) / unit * unit).filter(|&steps| steps >= unit);
+    let tried = ladder.filter(is_stable).map(|steps| attempt(&asked.need, way.0, way.1, steps));
     let error = |tried: &Tried| tried.error.unwrap_or(f64::INFINITY);
-    tried.min_by(|a, b| error(a).total_cmp(&error(b))).ok_or(Search::TooMany { about: None })
+    let least = tried.filter(|tried| tried.error.is_some()).min_by(|a, b| error(a).total_cmp(&error(b)));
+    least.map(|least| (least, limit)).ok_or(Search::TooMany { about: None, least: None })
 }
 
 impl Pick {

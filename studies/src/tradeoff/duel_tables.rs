@@ -1,12 +1,14 @@
 //! The tables that hold semi-implicit Euler against the others.
 
+use std::cmp::Ordering;
+
 use reports::Table;
 use serde::Serialize;
 
 use super::candidate::Candidate;
 use super::iso::{LEVELS, Offer};
 use super::tables::charge_name;
-use super::verdict::{Duel, Factor, duels, factor};
+use super::verdict::{Between, Duel, Factor, duels};
 use super::{Charge, Row};
 use crate::error::Error;
 use crate::run::Precision;
@@ -18,8 +20,11 @@ pub(super) struct QuestionRow {
     pub(super) charge: Charge,
     pub(super) scenes: usize,
     pub(super) semi_implicit_is_best_or_level: usize,
+    pub(super) rk4_known: usize,
     pub(super) semi_implicit_beats_rk4: usize,
+    pub(super) rk4_beats_semi_implicit: usize,
     pub(super) median_rk4_over_semi_implicit: Option<f64>,
+    pub(super) implicit_euler_known: usize,
     pub(super) semi_implicit_beats_implicit_euler: usize,
     pub(super) median_implicit_euler_over_semi_implicit: Option<f64>,
 }
@@ -40,15 +45,16 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
             charge_name(line.charge).to_owned(),
             line.scenes.to_string(),
             line.semi_implicit_is_best_or_level.to_string(),
-            line.semi_implicit_beats_rk4.to_string(),
+            format!("{} of {} known", line.semi_implicit_beats_rk4, line.rk4_known),
             line.median_rk4_over_semi_implicit.map_or_else(|| "–".to_owned(), |x| format!("{} x", short(Some(x)))),
-            line.semi_implicit_beats_implicit_euler.to_string(),
+            format!("{} of {} known", line.semi_implicit_beats_implicit_euler, line.implicit_euler_known),
         ]);
     }
     Ok(Derived {
         name: "tradeoff-question",
         caption: "Is semi-implicit Euler good enough? On how many scenes it is the best buy at an error, and beside RK4 and \
-                  implicit Euler alone; the price of RK4 as a part of its own",
+                  implicit Euler alone, where the sweeps reach far enough to tell; the price of RK4 as a part of its own, \
+                  where the median is no bound",
         csv: reports::write_csv(&lines)?,
         table,
     })
@@ -57,32 +63,35 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
 /// The same at one error, over the scenes on which it was reached.
 pub(super) fn question_row(duels: &[Duel], error_level: f64, charge: Charge) -> QuestionRow {
     let duels: Vec<&Duel> = duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
-    // A method that never reaches the level is beaten by any factor.
-    let over = |of: fn(&Duel) -> &Offer| -> Vec<f64> {
-        let one = |duel: &&Duel| match (factor(of(duel), &duel.semi_implicit), &duel.semi_implicit) {
-            (Some(Factor::Of(x) | Factor::AtLeast(x)), _) => Some(x),
-            (Some(Factor::Never), _) => Some(f64::INFINITY),
-            (None, own) => factor(own, of(duel)).map(|f| if let Factor::AtLeast(x) = f { 1.0 / x } else { 0.0 }),
-        };
-        duels.iter().filter_map(one).collect()
+    let over = |of: fn(&Duel) -> &Offer| -> Vec<Between> {
+        let all = duels.iter().map(|duel| Between::of(of(duel), &duel.semi_implicit));
+        all.filter(|factor| factor.beside_one().is_some()).collect()
     };
     let (rk4, implicit) = (over(|d| &d.rk4), over(|d| &d.implicit));
-    let beats = |factors: &[f64]| factors.iter().filter(|x| **x > 1.0).count();
+    let count = |factors: &[Between], order| factors.iter().filter(|f| f.beside_one() == Some(order)).count();
     QuestionRow {
         error_level,
         charge,
         scenes: duels.len(),
         semi_implicit_is_best_or_level: duels.iter().filter(|duel| duel.semi_implicit_is_best()).count(),
-        semi_implicit_beats_rk4: beats(&rk4),
-        semi_implicit_beats_implicit_euler: beats(&implicit),
-        median_rk4_over_semi_implicit: median(rk4),
-        median_implicit_euler_over_semi_implicit: median(implicit),
+        rk4_known: rk4.len(),
+        semi_implicit_beats_rk4: count(&rk4, Ordering::Greater),
+        rk4_beats_semi_implicit: count(&rk4, Ordering::Less),
+        median_rk4_over_semi_implicit: median(&rk4),
+        implicit_euler_known: implicit.len(),
+        semi_implicit_beats_implicit_euler: count(&implicit, Ordering::Greater),
+        median_implicit_euler_over_semi_implicit: median(&implicit),
     }
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+/// The factor in the middle; `None` where a bound sits there: the medians of the lower and the upper bounds enclose it.
+fn median(factors: &[Between]) -> Option<f64> {
+    let middle = |bound: fn(&Between) -> f64| {
+        let mut bounds: Vec<f64> = factors.iter().map(bound).collect();
+        bounds.sort_by(f64::total_cmp);
+        bounds.get(bounds.len() / 2).copied()
+    };
+    middle(|factor| factor.low).filter(|low| low.is_finite() && middle(|factor| factor.high) == Some(*low))
 }
 
 #[derive(Serialize)]

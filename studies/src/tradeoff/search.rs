@@ -8,6 +8,7 @@ use super::candidate::{Candidate, Span};
 use super::truth::Truth;
 use crate::run::Precision;
 use crate::scene::AnyScene;
+use crate::study::distinct;
 
 /// What is asked of a run.
 #[derive(Clone, Copy)]
@@ -33,6 +34,8 @@ pub struct Tried {
     pub error: Option<f64>,
     /// Evaluations of the force law.
     pub evaluations: u64,
+    /// Finer numbers of steps that were tried and keep the error too.
+    pub finer: usize,
 }
 
 /// How a search ended.
@@ -44,11 +47,20 @@ pub enum Search {
     TooMany {
         /// By the order observed, or `None` where none is to be seen.
         about: Option<f64>,
+        /// The least error met.
+        least: Option<Tried>,
     },
     /// The error does not fall any more: rounding, or a failure. The best run is given, if any finished.
     Never {
         /// The least error met.
         least: Option<Tried>,
+    },
+    /// Not even the coarsest run is within the budget.
+    OverBudget,
+    /// No step that is stable does what is asked.
+    Unstable {
+        /// The largest stable step, s; 0 where there is none.
+        limit_s: f64,
     },
 }
 
@@ -71,7 +83,12 @@ pub fn attempt(need: &Need<'_>, candidate: Candidate, precision: Precision, step
     let span = Span { end_s: need.end_s, steps };
     let run = candidate.run(need.scene, precision, span, need.truth.stride(steps));
     let error = run.as_ref().and_then(|run| need.truth.errors(run, steps)).map(|errors| errors.largest);
-    Tried { steps, error, evaluations: run.map_or(0, |run| run.evaluations) }
+    Tried { steps, error, evaluations: run.map_or(0, |run| run.evaluations), finer: 0 }
+}
+
+/// The finer numbers of steps that are tried beside `m`.
+pub fn finer(m: u64) -> Vec<u64> {
+    distinct(FINER.map(|f| (m as f64 * f).ceil() as u64))
 }
 
 /// The largest step of a method that keeps the error.
@@ -96,7 +113,8 @@ pub fn search(need: &Need<'_>, candidate: Candidate, precision: Precision) -> Se
             return end;
         }
         if tried.steps >= MOST_STEPS && !kept || tried.steps >= 4 * MOST_STEPS {
-            return Search::TooMany { about: extrapolated(&doubled, need.error, candidate) };
+            let about = extrapolated(&doubled, need.error, candidate);
+            return Search::TooMany { about, least: least(&doubled).map(|(_, least)| least) };
         }
         m *= 2;
     };
@@ -117,8 +135,9 @@ fn narrow(first: u64, meets: impl Fn(&Tried) -> bool, run: impl Fn(u64) -> Tried
                 low = middle;
             }
         }
-        let breaks = FINER.iter().map(|f| (high as f64 * f).ceil() as u64).filter(|&m| !meets(&run(m))).max();
-        let Some(breaks) = breaks else { return Search::Found(best) };
+        let finer = finer(high);
+        let breaks = finer.iter().copied().filter(|&m| !meets(&run(m))).max();
+        let Some(breaks) = breaks else { return Search::Found(Tried { finer: finer.len(), ..best }) };
         // Above the breaking one: the next that is kept. Where finer ones break it again and again, rounding does.
         (low, high) = (breaks, breaks + (breaks / RESOLUTION).max(1));
         best = run(high);
@@ -135,13 +154,22 @@ fn narrow(first: u64, meets: impl Fn(&Tried) -> bool, run: impl Fn(u64) -> Tried
 
 /// Whether the doublings so far tell that no more of them will do.
 fn hopeless(doubled: &[Tried], level: f64, candidate: Candidate) -> Option<Search> {
-    let of = |tried: &Tried| tried.error.unwrap_or(f64::INFINITY);
-    let least = doubled.iter().copied().enumerate().min_by(|a, b| of(&a.1).total_cmp(&of(&b.1)));
-    if let Some((_, least)) = least.filter(|(i, least)| i + STALLED < doubled.len() && of(least) < CONVERGING) {
+    let least = least(doubled);
+    let stalled =
+        |(i, least): &(usize, Tried)| i + STALLED < doubled.len() && least.error.is_some_and(|e| e < CONVERGING);
+    if let Some((_, least)) = least.filter(stalled) {
         return Some(Search::Never { least: Some(least) });
     }
     let about = extrapolated(doubled, level, candidate)?;
-    (about > 16.0 * MOST_STEPS as f64).then_some(Search::TooMany { about: Some(about) })
+    (about > 16.0 * MOST_STEPS as f64)
+        .then_some(Search::TooMany { about: Some(about), least: least.map(|(_, least)| least) })
+}
+
+/// The run with the least error, and its place; `None` where every run failed.
+fn least(tried: &[Tried]) -> Option<(usize, Tried)> {
+    let error = |tried: &Tried| tried.error.unwrap_or(f64::INFINITY);
+    let least = tried.iter().copied().enumerate().min_by(|a, b| error(&a.1).total_cmp(&error(&b.1)));
+    least.filter(|(_, least)| least.error.is_some())
 }
 
 /// Steps at which the level would be met, by the order that the last two doublings show, if it is the method's.

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use reports::Table;
 
 use super::advice::{Asked, Entry, Pick, over_budget};
-use super::limit::{Limit, limit};
-use super::search::{FINER, Search, attempt};
+use super::search::{Search, Tried, attempt};
 use crate::scene::AnyScene;
+use crate::stability::answer::significant;
 use crate::study::short;
 
 /// Scenes whose motion does not go round or to and fro, so that no period of theirs can be told.
@@ -24,7 +24,10 @@ const APERIODIC: [&str; 7] = [
 
 /// Writes the answer about one scene and returns the best pick.
 pub(super) fn answer(asked: &Asked<'_>, mut entries: Vec<Entry>, text: &mut String) -> Option<Pick> {
-    entries.sort_by(|a, b| rank(asked, a).total_cmp(&rank(asked, b)));
+    entries.sort_by(|a, b| {
+        let ((failed_a, a), (failed_b, b)) = (rank(asked, a), rank(asked, b));
+        failed_a.cmp(&failed_b).then(a.total_cmp(&b))
+    });
     // Writing to a string does not fail.
     let _ = writeln!(text, "{}", headline(asked));
     let possible: Vec<&Pick> =
@@ -36,10 +39,13 @@ pub(super) fn answer(asked: &Asked<'_>, mut entries: Vec<Entry>, text: &mut Stri
             advice(asked, best, other.copied(), text);
         }
         None => {
-            let _ = writeln!(text, "  cannot be had with {}", if entries.len() > 1 { "any of these" } else { "this" });
+            let _ = writeln!(text, "  cannot be had with {}", nearest(asked, &entries));
         }
     }
     let _ = writeln!(text, "\n{}", table(asked, &entries).to_text());
+    if asked.is_short && entries.iter().any(|entry| matches!(entry.found, Err(Search::Never { .. }))) {
+        let _ = writeln!(text, "double-double was not tried: --precision double-double");
+    }
     best.copied()
 }
 
@@ -48,13 +54,29 @@ fn allowed(asked: &Asked<'_>, pick: &Pick) -> bool {
     over_budget(asked, pick).is_none_or(|over| over <= 1.0)
 }
 
-/// Less is better: time where the error was given (evaluations where nothing is timed), error where the budget was.
-fn rank(asked: &Asked<'_>, entry: &Entry) -> f64 {
+/// Less is better: time where the error was given (evaluations where nothing is timed), error where the budget was; behind them
+/// what cannot be had, by the least error that it came to.
+fn rank(asked: &Asked<'_>, entry: &Entry) -> (bool, f64) {
     match &entry.found {
-        Err(_) => f64::INFINITY,
-        Ok(pick) if asked.question.error.is_none() => pick.tried.error.unwrap_or(f64::MAX),
-        Ok(pick) => pick.ns_per_simulated_second().unwrap_or(1e200 * pick.tried.evaluations as f64),
+        Err(Search::TooMany { least: Some(least), .. } | Search::Never { least: Some(least) }) => {
+            (true, least.error.unwrap_or(f64::INFINITY))
+        }
+        // They met the error, and fail for another reason.
+        Err(Search::Never { least: None } | Search::Unstable { .. }) => (true, asked.need.error),
+        Err(_) => (true, f64::INFINITY),
+        Ok(pick) if asked.question.error.is_none() => (false, pick.tried.error.unwrap_or(f64::MAX)),
+        Ok(pick) => (false, pick.ns_per_simulated_second().unwrap_or(1e200 * pick.tried.evaluations as f64)),
     }
+}
+
+/// What was not refused by far, and why it was all the same.
+fn nearest(asked: &Asked<'_>, entries: &[Entry]) -> String {
+    let these = if entries.len() > 1 { "any of these" } else { "this" };
+    let why = entries.first().map(|entry| match &entry.found {
+        Ok(_) => format!("{} in {} is over the budget", entry.candidate.label(), entry.precision.id()),
+        Err(_) => format!("{} in {}: {}", entry.candidate.label(), entry.precision.id(), reason(asked, entry)),
+    });
+    format!("{these}; nearest: {}", why.unwrap_or_default())
 }
 
 fn headline(asked: &Asked<'_>) -> String {
@@ -62,13 +84,14 @@ fn headline(asked: &Asked<'_>) -> String {
     let unit = asked.need.truth.unit();
     let mut words = vec![];
     if let Some(error) = asked.question.error {
-        words.push(format!("an error of at most {error} {unit}"));
+        words.push(format!("an error of at most {} {unit}", significant(error)));
     }
     if let Some(budget) = asked.question.budget_us {
-        words.push(format!("at most {budget} us of computing a simulated second"));
+        words.push(format!("at most {} us of computing a simulated second", significant(budget)));
     }
-    let frames = asked.frames.map_or_else(String::new, |frames| format!(", in {frames} frames"));
-    format!("{}: {} over {} s{frames}", scene.id(), words.join(" and "), asked.need.end_s)
+    let frames = asked.frames.map_or_else(String::new, |frames| format!(", in {}", counted(frames, "frame")));
+    let end = significant(asked.need.end_s);
+    format!("{}: {} over {end} s{frames}", scene.id(), words.join(" and "))
 }
 
 fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut String) {
@@ -79,16 +102,19 @@ fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut Strin
     line("method", format!("{} in {}", best.candidate.label(), best.precision.id()));
     line(
         "step",
-        format!("{:.6} s, {}; {}", best.h_s, counted(best.tried.steps), in_a_period(asked.need.scene, best.h_s)),
+        format!(
+            "{} s, {}; {}",
+            significant(best.h_s),
+            counted(best.tried.steps, "step"),
+            in_a_period(asked.need.scene, best.h_s)
+        ),
     );
     if let Some(frames) = asked.frames {
-        let substeps = best.tried.steps / frames;
-        let plural = if substeps == 1 { "" } else { "s" };
-        line("frame", format!("{substeps} substep{plural}, {}", cost_of_frame(asked, best)));
+        let substeps = counted(best.tried.steps / frames, "substep");
+        line("frame", format!("{substeps}, {}", cost_of_frame(asked, best)));
     }
     line("cost", cost(best));
-    let limit = limit(asked.need.scene, best.candidate, best.precision);
-    line("stability", limit.margin(best.h_s));
+    line("stability", best.limit.margin(best.h_s));
     for (i, words) in checks(asked, best, unit).into_iter().enumerate() {
         line(if i == 0 { "checked" } else { "" }, words);
     }
@@ -97,21 +123,24 @@ fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut Strin
     }
 }
 
-fn counted(steps: u64) -> String {
-    if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") }
+fn counted(number: u64, of: &str) -> String {
+    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
 }
 
 fn in_a_period(scene: &dyn AnyScene, h_s: f64) -> String {
     let scale = scene.scene().info().time_scale_s;
     if APERIODIC.contains(&scene.id()) {
-        format!("{:.1} in its time scale of {scale:.4} s", scale / h_s)
+        format!("{} in its time scale of {} s", short(Some(scale / h_s)), significant(scale))
     } else {
-        format!("{:.1} in its shortest natural period, 2 pi x {scale:.4} s", TAU * scale / h_s)
+        let in_period = TAU * scale / h_s;
+        let warning = if in_period < 2.0 { " - TOO FEW to show it: give a smaller --error" } else { "" };
+        let (in_period, scale) = (short(Some(in_period)), significant(scale));
+        format!("{in_period} in its shortest natural period, 2 pi x {scale} s{warning}")
     }
 }
 
 fn cost(pick: &Pick) -> String {
-    let evaluations = format!("{} evaluations of the force", pick.tried.evaluations);
+    let evaluations = format!("{} of the force", counted(pick.tried.evaluations, "evaluation"));
     match (pick.cost, pick.ns_per_simulated_second()) {
         (Some(cost), Some(ns)) => format!(
             "{} us a simulated second ({:.1} ns and {:.0} cycles a step, median {:.1} ns); {evaluations}",
@@ -141,39 +170,45 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
         Some(level) if e.is_some_and(|e| e <= level) => " - met",
         Some(_) => " - missed",
     };
-    let mut lines = vec![format!("{}: {}{}", counted(again.steps), error(again.error), verdict(again.error))];
+    let mut lines = vec![format!("{}: {}{}", counted(again.steps, "step"), error(again.error), verdict(again.error))];
     if pick.tried.steps == 1 {
         lines.push("one step is the whole run".to_owned());
     } else if asked.frames == Some(pick.tried.steps) {
         lines.push("a step is a whole frame, and cannot be larger".to_owned());
     } else {
-        let luck = if level.is_some_and(|level| twice.error.is_some_and(|e| e <= level)) {
-            " by luck: a step between the two misses"
-        } else {
-            ""
+        let is_met = level.is_some_and(|level| twice.error.is_some_and(|e| e <= level));
+        let luck = match (is_met, asked.frames.is_none() || pick.limit.allows(2.0 * pick.h_s)) {
+            (true, true) => " by luck: a step between the two misses",
+            (true, false) => ", but not stable",
+            _ => "",
         };
         lines.push(format!(
             "twice the step, {}: {}{}{luck}",
-            counted(twice.steps),
+            counted(twice.steps, "step"),
             error(twice.error),
             verdict(twice.error)
         ));
     }
     if level.is_some() {
-        lines.push(format!("{} finer steps, down to a quarter of it, keep the error too", FINER.len()));
+        let finer = pick.tried.finer;
+        lines.push(format!(
+            "{} keep{} the error too",
+            counted(finer as u64, "finer step"),
+            if finer == 1 { "s" } else { "" }
+        ));
     }
     lines
 }
 
 fn runner_up(asked: &Asked<'_>, best: &Pick, other: &Pick, unit: &str) -> String {
-    let name = format!("{} in {}, step {:.6} s", other.candidate.label(), other.precision.id(), other.h_s);
+    let name = format!("{} in {}, step {} s", other.candidate.label(), other.precision.id(), significant(other.h_s));
     if asked.question.error.is_none() {
         let factor = other.tried.error.zip(best.tried.error).map(|(a, b)| a / b);
         return format!("{name}: error {} {unit}, {} times as large", short(other.tried.error), short(factor));
     }
     match other.ns_per_simulated_second().zip(best.ns_per_simulated_second()) {
         Some((a, b)) => format!("{name}: {} us a simulated second, {:.2} times as much", short(Some(a / 1e3)), a / b),
-        None => format!("{name}: {} evaluations", other.tried.evaluations),
+        None => format!("{name}: {}", counted(other.tried.evaluations, "evaluation")),
     }
 }
 
@@ -200,9 +235,8 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     let name = [entry.candidate.label(), entry.precision.id().to_owned()];
     let Ok(pick) = &entry.found else {
         let blanks = ["–"; 4].map(str::to_owned);
-        return name.into_iter().chain(blanks).chain([refusal(asked, entry)]).collect();
+        return name.into_iter().chain(blanks).chain([format!("cannot be had: {}", reason(asked, entry))]).collect();
     };
-    let limit: Limit = limit(asked.need.scene, pick.candidate, pick.precision);
     let (steps, us) = match asked.frames.zip(asked.question.rate_hz) {
         Some((frames, rate)) => (pick.tried.steps / frames, pick.ns_per_simulated_second().map(|ns| ns / rate / 1e3)),
         None => (pick.tried.steps, pick.ns_per_simulated_second().map(|ns| ns / 1e3)),
@@ -210,25 +244,31 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     let over = if allowed(asked, pick) { "" } else { " over budget" };
     let cells = [
         steps.to_string(),
-        format!("{:.6}", pick.h_s),
+        significant(pick.h_s),
         short(pick.tried.error),
         format!("{}{over}", short(us)),
-        limit.part(pick.h_s),
+        pick.limit.part(pick.h_s),
     ];
     name.into_iter().chain(cells).collect()
 }
 
-fn refusal(asked: &Asked<'_>, entry: &Entry) -> String {
+/// Why something cannot be had.
+fn reason(asked: &Asked<'_>, entry: &Entry) -> String {
+    let at_least = |least: &Option<Tried>| {
+        least.map(|t| format!("least error {} at {}", short(t.error), counted(t.steps, "step")))
+    };
     match &entry.found {
-        Err(Search::TooMany { about: Some(steps) }) => format!("cannot be had: about {steps:.1e} steps"),
-        Err(Search::TooMany { about: None }) if asked.question.error.is_none() => "not within the budget".to_owned(),
-        Err(Search::TooMany { about: None }) => "cannot be had".to_owned(),
-        Err(Search::Never { least }) => match least.and_then(|t| t.error.map(|e| (e, t.steps))) {
-            Some((error, steps)) => {
-                format!("cannot be had: rounding; least error {} at {steps} steps", short(Some(error)))
-            }
-            None => "cannot be had".to_owned(),
-        },
-        _ => String::new(),
+        Err(Search::TooMany { about: Some(steps), .. }) => format!("about {steps:.1e} steps"),
+        Err(Search::TooMany { about: None, least }) => at_least(least).unwrap_or_else(|| "every run fails".to_owned()),
+        Err(Search::Never { least }) => {
+            format!("rounding; {}", at_least(least).unwrap_or_else(|| "finer steps miss the error again".to_owned()))
+        }
+        Err(Search::OverBudget) => "not within the budget".to_owned(),
+        Err(Search::Unstable { limit_s: 0.0 }) => "no stable step".to_owned(),
+        Err(Search::Unstable { limit_s }) => {
+            let does = if asked.question.error.is_some() { "keeps the error" } else { "is within the budget" };
+            format!("no stable step, of at most {} s, {does}", significant(*limit_s))
+        }
+        Err(Search::Found(_)) | Ok(_) => String::new(),
     }
 }

@@ -1,6 +1,8 @@
 //! 'Semi-implicit Euler does its job pretty well in most cases, so that RK4 and implicit Euler are not worth it': on which scenes,
 //! at which error?
 
+use std::cmp::Ordering;
+
 use integrator::methods::MethodId;
 
 use super::iso::{LEVELS, Offer, of_rule, prices};
@@ -70,6 +72,37 @@ pub fn factor(a: &Offer, b: &Offer) -> Option<Factor> {
         Offer::Above(a) => Factor::AtLeast(a.cost / b.cost),
         Offer::Never => Factor::Never,
     })
+}
+
+/// What is known of the price of one offer over that of another: it lies between the two, and is known where they are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// At least so many times.
+    pub low: f64,
+    /// At most so many times.
+    pub high: f64,
+}
+
+impl Between {
+    /// The price of `a` over that of `b`. A sweep that ends above the level bounds its price from below, one whose coarsest run
+    /// meets it from above, and what never meets it has none.
+    pub fn of(a: &Offer, b: &Offer) -> Self {
+        let bounds = |offer: &Offer| match offer {
+            Offer::At(price) if price.is_at_most => (0.0, price.cost),
+            Offer::At(price) => (price.cost, price.cost),
+            Offer::Above(price) => (price.cost, f64::INFINITY),
+            Offer::Never => (f64::INFINITY, f64::INFINITY),
+        };
+        let ((a_low, a_high), (b_low, b_high)) = (bounds(a), bounds(b));
+        let or = |quotient: f64, unknown: f64| if quotient.is_nan() { unknown } else { quotient };
+        Between { low: or(a_low / b_high, 0.0), high: or(a_high / b_low, f64::INFINITY) }
+    }
+
+    /// Whether it is greater than 1, less or the same; `None` where the bounds leave that open.
+    pub fn beside_one(self) -> Option<Ordering> {
+        let [low, high] = [self.low, self.high].map(|x| x.total_cmp(&1.0));
+        (low == high || low.is_gt()).then_some(low)
+    }
 }
 
 impl Duel {
