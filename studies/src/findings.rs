@@ -2,8 +2,8 @@
 
 use reports::{Block, Claim, Finding, Section, Verdict};
 
-/// A finding before its numbers are known. `{0}`, `{1}`, .. stand for what the claims measured, `{0:last}` for the last word
-/// of its first part, `{0:count}` for the number of its parts.
+/// A finding before its numbers are known. `{0}`, `{1}`, .. stand for what the claims measured, `{0:count}` for the number of
+/// its parts.
 struct Draft {
     title: &'static str,
     number: &'static str,
@@ -84,10 +84,7 @@ pub(crate) fn findings(sections: &[Section]) -> Vec<Finding> {
 /// The text with what the claim number `i` measured in its place.
 fn with_measured(text: &str, i: usize, measured: &str) -> String {
     let parts: Vec<&str> = measured.split("; ").collect();
-    let last = parts.first().and_then(|part| part.split_whitespace().last()).unwrap_or_default();
-    text.replace(&format!("{{{i}}}"), &readable(measured))
-        .replace(&format!("{{{i}:last}}"), &readable(last))
-        .replace(&format!("{{{i}:count}}"), &parts.len().to_string())
+    text.replace(&format!("{{{i}}}"), &readable(measured)).replace(&format!("{{{i}:count}}"), &parts.len().to_string())
 }
 
 /// The claims and the ids of the figures on the page.
@@ -167,7 +164,7 @@ mod tests {
     #[test]
     fn the_words_of_a_list_are_its_first_number_and_its_length() {
         let measured = "attitude (end) 3.997; attitude (max) 3.99812";
-        assert_eq!(with_measured("{0:last} of {0:count}", 0, measured), "3.997 of 2");
+        assert_eq!(with_measured("{0:count} parts", 0, measured), "2 parts");
         assert_eq!(with_measured("{1} stays", 0, measured), "{1} stays");
     }
 
