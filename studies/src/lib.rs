@@ -3,8 +3,8 @@
 //! A [`scene::Scene`] is plain data with an exact motion; [`run`] drives one trajectory, [`sweep`] many; a
 //! [`study::Study`] turns them into rows, and rows into figures and claims.
 //!
-//! Architecture invariants: every number shown is in a CSV; the same plan gives the same bytes, but for the times of `tradeoff`; a failed run never scores;
-//! figures and claims need no run, only rows.
+//! Architecture invariants: every number shown is in a CSV; the same plan gives the same bytes, but for the times of
+//! `tradeoff`; a failed run never scores; figures and claims need no run, only rows.
 
 //! Without the feature `programs` only what one run needs is left: scenes, their exact motion, runs and their errors.
 //! It is what a web page runs.

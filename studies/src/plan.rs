@@ -13,7 +13,8 @@ use crate::scenes;
 use crate::study::{Selection, distinct};
 use crate::sweep::Progress;
 
-/// All that decides the numbers of a run, and nothing else: the same plan gives the same bytes, but for times. An empty list means all.
+/// All that decides the numbers of a run, and nothing else: the same plan gives the same bytes, but for times. An empty list
+/// means all.
 #[derive(Args, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "What to run")]
