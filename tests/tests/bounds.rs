@@ -389,7 +389,7 @@ fn a_result_that_is_not_whole_is_not_compared() {
         (double, "3: ", "is in line 2 too"),
         (format!("{header}\n# end: 0 rows\n"), "", "holds no row"),
     ] {
-        let found = baseline::parse(text.as_bytes(), "r.csv").err().expect("not a result").to_string();
+        let found = baseline::parse(text.as_bytes(), "r.csv").expect_err("not a result").to_string();
         assert!(found.starts_with("r.csv:") && found[6..].trim_start().starts_with(at), "{text}\n{found}");
         assert!(found.contains(says), "{text}\n{found}");
     }
