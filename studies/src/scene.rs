@@ -249,7 +249,7 @@ pub trait AnyScene: Send + Sync {
     }
 
     /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
-    /// [`timed`](crate::tradeoff::timed).
+    /// [`timed`].
     #[cfg(feature = "programs")]
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap>;
 

@@ -49,7 +49,7 @@ pub fn read(path: &Path) -> Result<Lines, Error> {
 /// The same from memory; `place` is named in errors.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`read()`].
 pub fn parse(bytes: &[u8], place: &str) -> Result<Lines, Error> {
     let text = read::utf8(bytes, place)?;
     // The end is the last line alone, whatever a reason says.
