@@ -73,9 +73,7 @@ impl Source {
     fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
         match &mut self.rows {
             Rows::Measured(selection) => {
-                if let Some(label) = &mut selection.progress.label {
-                    S::ID.clone_into(label);
-                }
+                selection.progress.name(S::ID);
                 Ok(S::measure(selection))
             }
             Rows::Files(directory) => {
