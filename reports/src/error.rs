@@ -51,7 +51,7 @@ pub enum Error {
         /// What was found and what was expected.
         message: String,
     },
-    /// The drawing library refused.
+    /// A drawing that cannot be made a PNG.
     #[error("figure '{figure}' cannot be drawn: {message}")]
     Drawing {
         /// The figure's id.

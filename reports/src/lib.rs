@@ -13,7 +13,7 @@
 //! Invariants:
 //! - The same input gives the same bytes: no clock, no random number, no font of the machine, no hash order.
 //! - Nothing but [`files`] touches the disk.
-//! - The plotting library is named in [`plot`] alone, so that its faults are met and tested in one place.
+//! - Drawings name looks by class; colours and line styles stand in one list.
 //! - A value that cannot be drawn (NaN, infinite, not positive on a logarithmic axis) is left out, never moved.
 
 pub mod claim;
