@@ -7,7 +7,7 @@
 //! Figure  -> plot::svg         -> SVG   -> png -> PNG
 //! Claim   -> claim::exit_code  -> 0 or 1
 //! Page    -> Page::html        -> one self-contained HTML file
-//! bytes   -> OutputDir::write  -> a file, whole or not at all
+//! bytes   -> OutputDir         -> files, all of them or none
 //! ```
 //!
 //! Invariants:
