@@ -47,7 +47,7 @@ fn suggestion(nearest: Option<&str>) -> String {
 
 impl Error {
     /// The error at a place of the input, with what was found there and what would be right.
-    pub(crate) fn plan(place: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn plan(place: impl Into<String>, message: impl Into<String>) -> Self {
         Error::Plan { place: place.into(), message: message.into() }
     }
 

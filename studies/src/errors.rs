@@ -14,8 +14,11 @@ use crate::scene::AnyScene;
 /// Times at which a run is compared with the exact motion, evenly spaced; also the end.
 pub const CHECKPOINTS: u64 = 32;
 
-/// The exact motion of a scene at the checkpoints of every run, k T / 32.
-pub struct Truth(Vec<Observation>);
+/// The exact motion of a scene at evenly spaced times of every run, k T / n for k = 0..n.
+pub struct Truth {
+    end_s: f64,
+    looks: Vec<Observation>,
+}
 
 /// The errors of one quantity in one run. What a failed run leaves open is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,17 +38,37 @@ pub struct Errors {
 }
 
 impl Truth {
-    /// Evaluates the exact motion of a scene up to its horizon.
+    /// Evaluates the exact motion of a scene at the checkpoints up to its horizon.
     pub fn of(scene: &dyn AnyScene) -> Self {
-        Truth((0..=CHECKPOINTS).map(|k| exact_at(scene, k, CHECKPOINTS)).collect())
+        Self::up_to(scene, scene.scene().info().horizon_s, CHECKPOINTS)
     }
 
-    /// The exact motion at a step. Where the number of steps is a power of two the step is a checkpoint.
-    fn at_step(&self, scene: &dyn AnyScene, step: u64, steps: u64) -> Cow<'_, Observation> {
-        if (step * CHECKPOINTS).is_multiple_of(steps) {
-            Cow::Borrowed(&self.0[(step * CHECKPOINTS / steps) as usize])
+    /// Evaluates the exact motion of a scene at k T / `looks`.
+    pub(crate) fn up_to(scene: &dyn AnyScene, end_s: f64, looks: u64) -> Self {
+        Truth { end_s, looks: (0..=looks).map(|k| exact_at(scene, end_s, k, looks)).collect() }
+    }
+
+    /// The exact motion at the looks, the start and the end among them.
+    pub(crate) fn looks(&self) -> &[Observation] {
+        &self.looks
+    }
+
+    /// Steps between two looks at a run of so many steps.
+    pub(crate) fn stride(&self, steps: u64) -> u64 {
+        (steps / self.parts()).max(1)
+    }
+
+    fn parts(&self) -> u64 {
+        self.looks.len() as u64 - 1
+    }
+
+    /// The exact motion at a step. Where the number of steps is a multiple of the looks, the looks are steps.
+    pub(crate) fn at_step(&self, scene: &dyn AnyScene, step: u64, steps: u64) -> Cow<'_, Observation> {
+        let scaled = u128::from(step) * u128::from(self.parts());
+        if scaled.is_multiple_of(u128::from(steps)) {
+            Cow::Borrowed(&self.looks[(scaled / u128::from(steps)) as usize])
         } else {
-            Cow::Owned(exact_at(scene, step, steps))
+            Cow::Owned(exact_at(scene, self.end_s, step, steps))
         }
     }
 
@@ -83,10 +106,9 @@ pub fn run(scene: &dyn AnyScene, method: MethodId, precision: Precision, steps: 
     scene.run(&run, stride(steps))
 }
 
-/// The exact motion at the part k / n of the horizon.
-fn exact_at(scene: &dyn AnyScene, k: u64, n: u64) -> Observation {
-    let end = fx128::lit(scene.scene().info().horizon_s);
-    scene.exact(end * fx128::lit(k as f64) / fx128::lit(n as f64))
+/// The exact motion at the part k / n of the time up to the end.
+fn exact_at(scene: &dyn AnyScene, end_s: f64, k: u64, n: u64) -> Observation {
+    scene.exact(fx128::lit(end_s) * fx128::lit(k as f64) / fx128::lit(n as f64))
 }
 
 /// The largest distance of each quantity; a NaN stays.

@@ -15,7 +15,7 @@ use crate::plan::Plan;
 use crate::provenance::{self, Manifest};
 use crate::rotation::Rotation;
 use crate::stability::Stability;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{self, Derived, Selection, Study};
 use crate::teach;
 use crate::tradeoff::Tradeoff;
 
@@ -73,9 +73,7 @@ impl Source {
     fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
         match &mut self.rows {
             Rows::Measured(selection) => {
-                if let Some(label) = &mut selection.progress.label {
-                    S::ID.clone_into(label);
-                }
+                selection.progress.name(S::ID);
                 Ok(S::measure(selection))
             }
             Rows::Files(directory) => {
@@ -114,18 +112,11 @@ impl Source {
     }
 }
 
-/// The product with commands that name the plan's flags, too: what is read under a chart makes that very chart.
+/// The product with the plan's flags in the commands under its charts.
 fn by_plan(mut product: Product, plan: &Plan) -> Product {
     fn complete(block: &mut Block, plan: &Plan) {
         match block {
-            Block::Figure { figure, .. } => {
-                let scene = figure.command.split_once("--scene ").map(|(_, scene)| scene);
-                let separator = if scene.is_none() && !figure.command.contains(" -- ") { " --" } else { "" };
-                let flags = plan.flags(scene);
-                if !flags.is_empty() {
-                    figure.command += &format!("{separator}{flags}");
-                }
-            }
+            Block::Figure { figure, .. } => figure.command = study::by_plan(&figure.command, plan),
             Block::Group { blocks, .. } => blocks.iter_mut().for_each(|block| complete(block, plan)),
             _ => {}
         }

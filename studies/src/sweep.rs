@@ -47,6 +47,13 @@ impl Progress {
         Progress { label: watched.then(|| label.to_owned()) }
     }
 
+    /// The same bar, if there is one, with another label.
+    pub fn name(&mut self, name: &str) {
+        if let Some(label) = &mut self.label {
+            name.clone_into(label);
+        }
+    }
+
     fn bar(&self, length: usize) -> ProgressBar {
         let Some(label) = &self.label else { return ProgressBar::hidden() };
         let template = "{prefix:>14} [{bar:40}] {pos}/{len} {eta}";

@@ -60,9 +60,9 @@ impl Bounds {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let place = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| Error::Plan {
-            place: place.clone(),
-            message: format!("cannot be read: {error}; give the file of bounds with --bounds FILE"),
+        let bytes = std::fs::read(path).map_err(|error| {
+            let message = format!("cannot be read: {error}; give the file of bounds with --bounds FILE");
+            Error::plan(place.as_str(), message)
         })?;
         Self::parse(&bytes, &place)
     }

@@ -153,7 +153,7 @@ fn chosen<'a>(cli: &Flags, bounds: &'a Bounds) -> Result<Vec<&'a Row>, Error> {
     let rows: Vec<&Row> = bounds.rows.iter().filter(wanted).collect();
     if rows.is_empty() {
         let message = "no row of the file is chosen: a gate without rows holds nothing".to_owned();
-        return Err(Error::Plan { place: cli.bounds.display().to_string(), message });
+        return Err(Error::plan(cli.bounds.display().to_string(), message));
     }
     Ok(rows)
 }

@@ -59,14 +59,12 @@ macro_rules! list {
                     return Ok(Box::new(Drawing::new(law, members.collect())));
                 }
             )*)*
-            Err(Error::Plan {
-                place: format!("--ensemble with scene '{id}'"),
-                message: format!(
-                    "its start is not drawn: the law of motion, its contacts or its exact motion allow one start only; \
-                     scenes with a rule: {}",
-                    with_a_rule().join(", ")
-                ),
-            })
+            let message = format!(
+                "its start is not drawn: the law of motion, its contacts or its exact motion allow one start only; \
+                 scenes with a rule: {}",
+                with_a_rule().join(", ")
+            );
+            Err(Error::plan(format!("--ensemble with scene '{id}'"), message))
         }
 
         /// The scenes and presets whose starts can be drawn.

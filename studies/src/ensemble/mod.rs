@@ -112,12 +112,12 @@ impl Study for Ensemble {
 /// # Errors
 /// A size or a choice that leaves nothing to be run, named with what would be right.
 pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Format) -> Result<Product, Error> {
-    let place = || "--ensemble".to_owned();
+    const PLACE: &str = "--ensemble";
     if !(1..=MOST_MEMBERS).contains(&count) {
-        return Err(Error::Plan { place: place(), message: format!("{count} members; give 1 to {MOST_MEMBERS}") });
+        return Err(Error::plan(PLACE, format!("{count} members; give 1 to {MOST_MEMBERS}")));
     }
     if !selection.precisions.contains(&Precision::F64) {
-        return Err(Error::Plan { place: place(), message: "lanes compute in f64; leave --precision out".to_owned() });
+        return Err(Error::plan(PLACE, "lanes compute in f64; leave --precision out"));
     }
     if !selection.methods.iter().any(|&method| runs_in_lanes(method)) {
         let lanes = MethodId::ALL.iter().filter(|&&method| runs_in_lanes(method)).map(|method| method.id());
@@ -125,16 +125,14 @@ pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Form
             "an implicit step compares numbers, each member for itself, and does not run in lanes; give one of {}",
             lanes.collect::<Vec<_>>().join(", ")
         );
-        return Err(Error::Plan { place: place(), message });
+        return Err(Error::plan(PLACE, message));
     }
     // A scene without a rule is left out among others; where nothing is left, it is said why.
     let known = with_a_rule();
     if let (Some(first), false) = (selection.scenes.first(), selection.scenes.iter().any(|s| known.contains(&s.id()))) {
         draw(first.as_ref(), 1, seed)?;
     }
-    if let Some(label) = &mut selection.progress.label {
-        Ensemble::ID.clone_into(label);
-    }
+    selection.progress.name(Ensemble::ID);
     let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), format)?;
     let cost = cost::table(selection, count, seed)?;
     let name = format!("{}.csv", cost.name);

@@ -72,7 +72,7 @@ struct Shown(usize, usize, usize, u64, usize, usize, u64, Option<f64>, Option<f6
 pub fn page(convergence_csv: &str, set: &[String], about: &[(String, String)]) -> Result<String, Error> {
     let rows: Vec<Row> = reports::read_csv(convergence_csv, "convergence.csv")?;
     let data = serde_json::to_string(&data(&rows, set))
-        .map_err(|error| Error::Plan { place: FILE.to_owned(), message: error.to_string() })?;
+        .map_err(|error| Error::plan(FILE, error.to_string()))?;
     let parts = [
         ("{{STYLE}}", STYLE.to_owned()),
         ("{{FOOTER}}", footer(about)),

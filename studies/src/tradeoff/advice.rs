@@ -112,15 +112,15 @@ impl Question {
         ];
         for (flag, value, example) in numbers {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                return Err(plan(flag, format!("{value} is not a positive number; give {example}")));
+                return Err(Error::plan(flag, format!("{value} is not a positive number; give {example}")));
             }
         }
         if !has_scene {
-            return Err(plan("--scene", "advice is about a scene; name one, such as --scene pendulum".to_owned()));
+            return Err(Error::plan("--scene", "advice is about a scene; name one, such as --scene pendulum".to_owned()));
         }
         if self.error.is_none() && self.budget_us.is_none() {
             let message = "say what can be stood: an error (--error 1e-3) or a budget (--budget-us 5)".to_owned();
-            return Err(plan(if self.rate_hz.is_some() { "--rate" } else { "--for" }, message));
+            return Err(Error::plan(if self.rate_hz.is_some() { "--rate" } else { "--for" }, message));
         }
         Ok(())
     }
@@ -137,14 +137,10 @@ impl Question {
         if frames > MOST_STEPS as f64 {
             let message =
                 format!("{end_s} s at {rate} frames a second are more than {MOST_STEPS} frames; shorten --for");
-            return Err(plan("--rate", message));
+            return Err(Error::plan("--rate", message));
         }
         Ok((frames / rate, Some(frames as u64)))
     }
-}
-
-fn plan(place: &str, message: String) -> Error {
-    Error::Plan { place: place.to_owned(), message }
 }
 
 /// What was found for one candidate in one arithmetic.
@@ -215,7 +211,7 @@ fn ways(asked: &Asked<'_>, selection: &Selection) -> Result<Vec<(Candidate, Prec
                 candidate.label(),
                 precision.id()
             );
-            Err(plan("--budget-us", message))
+            Err(Error::plan("--budget-us", message))
         }
         _ => Ok(if timed.is_empty() { ways } else { timed }),
     }

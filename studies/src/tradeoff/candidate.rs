@@ -5,6 +5,7 @@ use integrator::rigid_body::{AttitudeUpdate, Storage};
 use reports::Marker;
 
 use super::timed::{Lap, Laps};
+use crate::rotation::orders::is_rigid;
 use crate::rotation::scheme::{Rule, Scheme};
 use crate::run::{Precision, Run, Trajectory};
 use crate::scene::AnyScene;
@@ -30,7 +31,7 @@ pub struct Span {
 
 /// Every way to move a scene with one of the methods. The steps that exist for rigid bodies only come with the full list.
 pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId]) -> Vec<Candidate> {
-    let is_rigid = scene.exact_in(Precision::F64, 0.0).rotation().is_some();
+    let is_rigid = is_rigid(scene);
     if is_rigid { for_bodies(methods) } else { methods.iter().map(|&method| Candidate::flat(method)).collect() }
 }
 

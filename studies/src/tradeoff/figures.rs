@@ -113,15 +113,12 @@ fn is_shown(candidate: Candidate, charge: Charge) -> bool {
     }
 }
 
-/// The methods of a U-curve.
-const BENT: [MethodId; 3] = [MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4];
-
 fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
     let mut layers = Vec::new();
     for sweep in sweeps {
         let first = sweep[0];
         let Some(candidate) = Candidate::from_id(&first.method) else { continue };
-        let Some(method) = candidate.method().filter(|m| BENT.contains(m)) else { continue };
+        let Some(method) = candidate.method().filter(|m| SHOWN.contains(m)) else { continue };
         if candidate.is_rigid && candidate.scheme.storage != Storage::BodyOmega {
             continue;
         }

@@ -46,17 +46,17 @@ pub(super) fn table(rows: &[Row]) -> Result<Option<Derived>, Error> {
         }
     }
     let Some(first) = best.first() else { return Ok(None) };
-    let systems = distinct(best.iter().map(|line| line.system.clone()));
+    let others = distinct(best.iter().map(|line| line.system.as_str()).filter(|system| *system != OURS));
     let mut headers = vec!["scene".to_owned(), "error asked".to_owned(), "over (s)".to_owned(), "leader".to_owned()];
     headers.push(format!("this one's best, measured on {} ({})", first.processor, first.date));
-    headers.extend(systems.iter().filter(|system| *system != OURS).map(|system| format!("{system}, times ours")));
+    headers.extend(others.iter().map(|system| format!("{system}, times ours")));
     let names: Vec<&str> = headers.iter().map(String::as_str).collect();
     let mut table = Table::new(&names, &[&names[1..3], &names[5..]].concat());
     for question in best.iter().filter(|line| line.system == OURS) {
         let answers: Vec<&Line> = best.iter().filter(|line| same_question(line, question)).collect();
         let leader = answers.iter().min_by(|a, b| a.ns_per_simulated_second.total_cmp(&b.ns_per_simulated_second));
-        let times = |system: &String| {
-            let line = answers.iter().find(|line| line.system == *system);
+        let times = |system: &&str| {
+            let line = answers.iter().find(|line| line.system == **system);
             short(line.map(|line| line.ns_per_simulated_second / question.ns_per_simulated_second))
         };
         let mut cells = vec![
@@ -71,7 +71,7 @@ pub(super) fn table(rows: &[Row]) -> Result<Option<Derived>, Error> {
                 short(Some(question.ns_per_simulated_second))
             ),
         ];
-        cells.extend(systems.iter().filter(|system| *system != OURS).map(times));
+        cells.extend(others.iter().map(times));
         table.push(cells);
     }
     Ok(Some(Derived {

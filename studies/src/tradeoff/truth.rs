@@ -1,10 +1,6 @@
 //! The error of a run: the largest over a number of looks of what its configuration is away from the exact motion.
 
-use std::borrow::Cow;
-
-use faer::fx128;
-use integrator::Real;
-
+use crate::errors;
 use crate::observation::{Observation, Quantity};
 use crate::run::{Outcome, Trajectory};
 use crate::scene::AnyScene;
@@ -15,8 +11,7 @@ pub const LOOKS: u64 = 32;
 /// The exact motion of a scene at the looks of every run.
 pub struct Truth<'a> {
     scene: &'a dyn AnyScene,
-    end_s: f64,
-    looks: Vec<Observation>,
+    exact: errors::Truth,
 }
 
 /// Distances from the exact motion: of positions in m, of attitudes and angles in rad, the larger where a scene has both.
@@ -31,29 +26,12 @@ pub struct Errors {
 impl<'a> Truth<'a> {
     /// The exact motion at k T / `looks`.
     pub fn new(scene: &'a dyn AnyScene, end_s: f64, looks: u64) -> Self {
-        let end = fx128::lit(end_s);
-        let at = |k: u64| scene.exact(end * fx128::lit(k as f64) / fx128::lit(looks as f64));
-        Truth { scene, end_s, looks: (0..=looks).map(at).collect() }
+        Truth { scene, exact: errors::Truth::up_to(scene, end_s, looks) }
     }
 
     /// Steps between two looks at a run of so many steps.
     pub fn stride(&self, steps: u64) -> u64 {
-        (steps / self.count()).max(1)
-    }
-
-    fn count(&self) -> u64 {
-        self.looks.len() as u64 - 1
-    }
-
-    /// The exact motion at a step. Where the number of steps is a multiple of the looks, the looks are steps.
-    fn at(&self, step: u64, steps: u64) -> Cow<'_, Observation> {
-        let scaled = u128::from(step) * u128::from(self.count());
-        if scaled.is_multiple_of(u128::from(steps)) {
-            Cow::Borrowed(&self.looks[(scaled / u128::from(steps)) as usize])
-        } else {
-            let end = fx128::lit(self.end_s);
-            Cow::Owned(self.scene.exact(end * fx128::lit(step as f64) / fx128::lit(steps as f64)))
-        }
+        self.exact.stride(steps)
     }
 
     /// The errors of a finished run of `steps` steps; `None` for a failed one, or where a number is not finite.
@@ -61,18 +39,18 @@ impl<'a> Truth<'a> {
         if run.outcome != Outcome::Finished {
             return None;
         }
-        over(run.seen.iter().map(|(step, seen)| of_configuration(seen, &self.at(*step, steps))))
+        over(run.seen.iter().map(|(step, seen)| of_configuration(seen, &self.exact.at_step(self.scene, *step, steps))))
     }
 
     /// The largest size of the configuration: |x| in m, an angle in rad, 1 for an attitude.
     pub fn scale(&self) -> f64 {
-        let of = |quantity| self.looks.iter().map(move |seen| seen.scale(quantity)).fold(0.0, f64::max);
+        let of = |quantity| self.exact.looks().iter().map(move |seen| seen.scale(quantity)).fold(0.0, f64::max);
         of(Quantity::Position).max(of(Quantity::Attitude))
     }
 
     /// Units of the errors of this scene: `m`, `rad`, or both.
     pub fn unit(&self) -> &'static str {
-        let has = |quantity| self.looks[0].get(quantity).is_some();
+        let has = |quantity| self.exact.looks()[0].get(quantity).is_some();
         match (has(Quantity::Position), has(Quantity::Attitude)) {
             (true, true) => "m and rad",
             (false, true) => "rad",

@@ -161,8 +161,11 @@ pub fn table(rows: &[Row]) -> Result<Derived, Error> {
     })
 }
 
+/// The methods whose U-curves are shown.
+pub(super) const SHOWN: [MethodId; 3] = [MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4];
+
 fn is_shown(method: &str) -> bool {
-    [MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4]
+    SHOWN
         .iter()
         .any(|m| method.strip_prefix(m.id()).is_some_and(|rest| rest.is_empty() || rest == "/body-omega"))
 }

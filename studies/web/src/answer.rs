@@ -78,7 +78,7 @@ fn trajectory(scene: &dyn AnyScene, question: &Question) -> Result<Trajectory, E
         Rule::Method(method) => Ok(scene.run(&question.run(method), question.stride)),
         Rule::Rigid(step) => scene
             .run_step(&question.run(step), question.stride)
-            .ok_or_else(|| misfit("step", "exists for rigid bodies only; ask with 'method'")),
+            .ok_or_else(|| Error::plan("step", "exists for rigid bodies only; ask with 'method'")),
     }
 }
 
@@ -156,13 +156,13 @@ impl Loaded {
 
 /// Head, then step length and spectral radius.
 fn amplification(scene: &dyn AnyScene, question: &Question) -> Result<Vec<f64>, Error> {
-    let Rule::Method(method) = question.rule else { return Err(misfit("step", "ask with a 'method'")) };
+    let Rule::Method(method) = question.rule else { return Err(Error::plan("step", "ask with a 'method'")) };
     let stepping = Stepping { scene, method, precision: question.precision };
     let mut numbers = vec![0.0, 0.0, 0.0, 2.0];
     for k in 1..=question.steps {
         let h_s = question.end_s * k as f64 / question.steps as f64;
         let radius = spectral_radius(&stepping, h_s)
-            .ok_or_else(|| misfit("scene", "has no two-by-two amplification matrix; ask about an oscillator"))?;
+            .ok_or_else(|| Error::plan("scene", "has no two-by-two amplification matrix; ask about an oscillator"))?;
         numbers.extend([h_s, radius]);
     }
     Ok(numbers)
@@ -195,8 +195,4 @@ fn describe(scene: &dyn AnyScene) -> String {
         line(&["balance", entry.balance.id(), entry.balance.unit(), &entry.value.len().to_string(), conserved]);
     }
     text
-}
-
-fn misfit(place: &str, message: &str) -> Error {
-    Error::Plan { place: place.to_owned(), message: message.to_owned() }
 }

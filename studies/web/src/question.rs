@@ -85,7 +85,7 @@ impl Question {
             question.take(key, value)?;
         }
         if question.steps == 0 || question.stride == 0 || !(question.end_s.is_finite() && question.end_s > 0.0) {
-            return Err(wrong("steps, stride, end_s", "must be greater than zero"));
+            return Err(Error::plan("steps, stride, end_s", "must be greater than zero"));
         }
         Ok(question)
     }
@@ -94,7 +94,7 @@ impl Question {
         match key {
             "scene" => value.clone_into(&mut self.scene),
             "set" => {
-                let (name, value) = value.split_once('=').ok_or_else(|| wrong("set", "must be NAME=VALUE"))?;
+                let (name, value) = value.split_once('=').ok_or_else(|| Error::plan("set", "must be NAME=VALUE"))?;
                 self.set.push((name.to_owned(), value.to_owned()));
             }
             "method" => self.rule = Rule::Method(method_from_id(value)?),
@@ -150,9 +150,5 @@ fn named<A: Copy>(kind: &'static str, all: &[A], id: impl Fn(A) -> &'static str,
 }
 
 fn number<N: std::str::FromStr>(key: &str, text: &str) -> Result<N, Error> {
-    text.parse().map_err(|_| wrong(key, &format!("'{text}' is not of the right form")))
-}
-
-fn wrong(place: &str, message: &str) -> Error {
-    Error::Plan { place: place.to_owned(), message: message.to_owned() }
+    text.parse().map_err(|_| Error::plan(key, &format!("'{text}' is not of the right form")))
 }
