@@ -3,7 +3,7 @@
 //! A [`Model`] gives the rate of change of its velocity, a [`Space`] says how a configuration moves along a velocity,
 //! a [`Method`] turns the two into one step of length h, and [`drive`] takes n of them at the times t = i h.
 //! The arithmetic is a type parameter: [`Real`] (one number or several lanes), [`Single`] (one comparable number:
-//! `f32`, `f64`, `faer::fx128`).
+//! `f32`, `f64`, [`DoubleDouble`]).
 //!
 //! ```
 //! use integrator::{Model, State, drive, methods::SemiImplicitEuler};
@@ -43,6 +43,6 @@ pub mod space;
 
 pub use model::{Method, Model, State, Tangent};
 pub use pose::{Pose, Twist};
-pub use real::{Real, Single};
+pub use real::{DoubleDouble, Real, Single};
 pub use rotation::Rotation;
 pub use space::{Space, Vector};
