@@ -11,7 +11,12 @@ pub struct Facts {
     pub title: &'static str,
     /// The order of convergence on a smooth problem.
     pub order: u32,
-    /// Evaluations of the force law in one step; `None` where a step iterates until its equations are solved.
+    /// The order where the force depends on the velocity, if it is another.
+    pub order_with_velocity: Option<u32>,
+    /// The order on rotations, if it is another.
+    pub order_on_rotations: Option<u32>,
+    /// Evaluations of the force law in one step of a run under way; `None` where a step iterates until its equations are
+    /// solved.
     pub evaluations: Option<u64>,
     /// Whether a step solves a system of equations, and so can fail to.
     pub implicit: bool,
@@ -38,6 +43,8 @@ impl Facts {
         id: "",
         title: "",
         order: 0,
+        order_with_velocity: None,
+        order_on_rotations: None,
         evaluations: None,
         implicit: false,
         symplectic: None,

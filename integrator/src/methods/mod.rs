@@ -56,24 +56,37 @@
 //! In this crate the impl is a file `methods/mean_omega.rs` with `MeanOmega::FACTS`, and its line `MeanOmega, BodyOmega, Body;`
 //! gives it a name, its claims in the rotation study and its laws in the tests.
 
+mod adams_bashforth;
+mod composition;
 mod explicit_euler;
 mod facts;
 mod free_splitting;
+mod heun;
 mod implicit_euler;
 mod implicit_gyroscopic;
 mod implicit_midpoint;
+mod kutta3;
 mod momentum_midpoint;
 mod restored_momentum;
 mod rk4;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
+pub use adams_bashforth::{
+    AdamsBashforth2, AdamsBashforth2Filled, AdamsBashforth3, AdamsBashforth3Filled, AdamsBashforth4,
+    AdamsBashforth4Filled, AdamsBashforth5, AdamsBashforth5Filled, MeanOfTwoSlopes,
+};
+pub use composition::{
+    SplittingKahanLi6, SplittingKahanLi8, SplittingSuzuki4, VerletKahanLi6, VerletKahanLi8, VerletSuzuki4,
+};
 pub use explicit_euler::ExplicitEuler;
 pub use facts::{Conserved, Facts, LinearTheory, Rational};
 pub use free_splitting::FreeSplitting;
+pub use heun::Heun;
 pub use implicit_euler::ImplicitEuler;
 pub use implicit_gyroscopic::ImplicitGyroscopic;
 pub use implicit_midpoint::ImplicitMidpoint;
+pub use kutta3::Kutta3;
 pub use momentum_midpoint::MomentumMidpoint;
 pub use restored_momentum::RestoredMomentum;
 pub use rk4::Rk4;
@@ -198,6 +211,17 @@ general_list! {
     }
 }
 
+general_list! {
+    /// The name of a method that no study runs by itself yet: those of engines, and yardsticks of high order.
+    MoreMethod {
+        core explicit: ;
+        core implicit: ;
+        more explicit: Heun, Kutta3, AdamsBashforth2, AdamsBashforth3, AdamsBashforth4, AdamsBashforth5, AdamsBashforth2Filled,
+            AdamsBashforth3Filled, AdamsBashforth4Filled, AdamsBashforth5Filled, MeanOfTwoSlopes, VerletSuzuki4, VerletKahanLi6,
+            VerletKahanLi8;
+    }
+}
+
 /// Work to be done with a step for rigid bodies that is chosen at run time, and with the model it is a method for.
 pub trait RigidVisitor<T: Single, B: RigidBody<T>> {
     /// What the work gives.
@@ -264,5 +288,14 @@ rigid_list! {
         RestoredMomentum, BodyOmega, Body;
         MomentumMidpoint, WorldMomentum, World;
         FreeSplitting, BodyOmega, Body;
+    }
+}
+
+rigid_list! {
+    /// The name of a step for rigid bodies that no study runs by itself yet.
+    MoreRigidStep {
+        SplittingSuzuki4, BodyOmega, Body;
+        SplittingKahanLi6, BodyOmega, Body;
+        SplittingKahanLi8, BodyOmega, Body;
     }
 }
