@@ -6,6 +6,8 @@ use std::ops::Neg;
 use faer::fx128;
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 
+use crate::reduction::{LARGE, folded};
+
 /// A number, or several lanes of numbers, that a step computes with.
 ///
 /// Every operation gives the same bits on every platform: `+ - * /` and `sqrt` are correctly rounded, the
@@ -225,7 +227,8 @@ fn taylor_double_double(x_squared: fx128) -> (fx128, fx128) {
 }
 
 /// `faer::fx128` has no trigonometric functions: the argument is reduced modulo pi/2 with a three-part constant, divided
-/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6.
+/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6 and for |x| > 2^55, where all digits of
+/// pi that count are used.
 impl Real for fx128 {
     #[inline(always)]
     fn lit(x: f64) -> Self {
@@ -243,9 +246,10 @@ impl Real for fx128 {
         if !fx128::is_finite(self) {
             return (fx128::NAN, fx128::NAN);
         }
-        let quarters = (self.0 / HALF_PI[0]).round();
+        let (turned, angle) = if self.0.abs() < LARGE { (0, self) } else { folded(self) };
+        let quarters = (angle.0 / HALF_PI[0]).round();
         let k = fx128::from_f64(quarters);
-        let reduced = HALF_PI.iter().fold(self, |x, &part| x.sub_accurate(k * fx128::from_f64(part)));
+        let reduced = HALF_PI.iter().fold(angle, |x, &part| x.sub_accurate(k * fx128::from_f64(part)));
         let x = reduced * fx128::from_f64(0.25);
         let (mut cosine, sinc) = taylor_double_double(x * x);
         let mut sine = sinc * x;
@@ -253,7 +257,7 @@ impl Real for fx128 {
             let twice = sine + sine;
             (sine, cosine) = (twice * cosine, fx128::ONE - twice * sine);
         }
-        match quarters.rem_euclid(4.0) as u8 {
+        match (quarters.rem_euclid(4.0) as u64 + turned) % 4 {
             0 => (sine, cosine),
             1 => (cosine, -sine),
             2 => (-sine, -cosine),

@@ -8,10 +8,13 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::error::Error;
 use crate::observation::{Observation, Quantity};
 use crate::scene::{Balance, Entry, Info, Motion, Scene, StabilityLimit, Theory};
+use crate::scenes::answerable;
 use crate::scenes::oscillation::Oscillation;
 use crate::scenes::parameters::scene_parameters;
+use crate::special::scaled::Scaled;
 
 scene_parameters! {
     /// A mass on a spring with a damper; the default is under-damped, zeta = 1/8.
@@ -46,14 +49,16 @@ impl DampedOscillator {
     }
 
     fn oscillation(&self) -> Oscillation {
-        let mass = fx128::lit(self.mass);
+        let (zeta, one) = (fx128::lit(self.zeta), fx128::ONE);
+        let square = Scaled::of(self.stiffness).over(Scaled::of(self.mass));
         Oscillation {
-            decay: self.damping::<fx128>() / (mass + mass),
-            square: fx128::lit(self.stiffness) / mass,
-            force: fx128::ZERO,
-            drive: fx128::ZERO,
-            x0: fx128::lit(self.x0),
-            v0: fx128::lit(self.v0),
+            decay: square.sqrt().times(Scaled::of(self.zeta)),
+            square,
+            beat: (one - zeta) * (one + zeta),
+            force: Scaled::of(0.0),
+            drive: 0.0,
+            x0: self.x0,
+            v0: self.v0,
         }
     }
 }
@@ -86,6 +91,14 @@ impl Scene for DampedOscillator {
             time_scale_s: (self.mass / self.stiffness).sqrt(),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let phase = self.oscillation().largest_phase(end_s);
+        answerable::phase("damped-oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("damped-oscillator", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

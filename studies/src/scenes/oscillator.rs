@@ -11,10 +11,14 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::{Observation, Quantity};
 use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, StabilityLimit, Theory, rounded};
+use crate::scenes::answerable;
 use crate::scenes::parameters::scene_parameters;
+use crate::special::elementary::sinc;
+use crate::special::scaled::Scaled;
 
 scene_parameters! {
     /// A mass on a spring.
@@ -34,6 +38,10 @@ impl Oscillator {
     /// omega = sqrt(k / m), rad/s.
     pub fn omega(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()
+    }
+
+    fn frequency(&self) -> Scaled {
+        Scaled::of(self.stiffness).over(Scaled::of(self.mass)).sqrt()
     }
 
     /// lim (error / h^p) of position and velocity at the time `t_s`.
@@ -75,10 +83,14 @@ impl<T: Real> Model<T> for Oscillator {
 
 impl<T: Single> Motion<T> for Oscillator {
     fn exact(&self, t: T) -> State<Vector1<T>> {
-        let w = (fx128::lit(self.stiffness) / fx128::lit(self.mass)).sqrt();
-        let (sine, cosine) = (w * t.widen()).sin_cos();
-        let (x0, v0) = (fx128::lit(self.x0), fx128::lit(self.v0));
-        rounded(Vector1::new(x0 * cosine + v0 / w * sine), Vector1::new(v0 * cosine - x0 * w * sine))
+        let (time, w) = (Scaled::of_wide(t.widen()), self.frequency());
+        let phase = w.times(time).value();
+        let cosine = Scaled::of_wide(phase.sin_cos().1);
+        let sinc = Scaled::of_wide(sinc(phase));
+        let (x0, v0) = (Scaled::of(self.x0), Scaled::of(self.v0));
+        let x = [x0.times(cosine), v0.times(time).times(sinc)];
+        let v = [v0.times(cosine), Scaled::of(-self.x0).times(w).times(Scaled::of_wide(phase.sin_cos().0))];
+        rounded(Vector1::new(Scaled::sum(&x)), Vector1::new(Scaled::sum(&v)))
     }
     fn observe(&self, s: &State<Vector1<T>>) -> Observation {
         Observation::particles(s)
@@ -96,6 +108,14 @@ impl Scene for Oscillator {
             time_scale_s,
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let phase = self.frequency().times(Scaled::of(end_s)).value().to_f64();
+        answerable::phase("oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("oscillator", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

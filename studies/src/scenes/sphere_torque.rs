@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::observation::{Observation, Quantity};
 use crate::scene::{Entry, Info, RigidMotion, Scene, Theory};
+use crate::scenes::answerable;
 use crate::scenes::constant_force::lit;
 use crate::scenes::parameters::scene_parameters;
 use crate::scenes::rigid;
@@ -57,7 +58,7 @@ impl Scene for SphereTorque {
         Info {
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
             equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",
-            source: "Zener 1932 (Landau-Zener), by Kummer's function",
+            source: "Zener 1932 (Landau-Zener), by power series, and by the adiabatic series of a slow turn",
             horizon_s: 2.25,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
             coarsest_steps: 8,
@@ -65,7 +66,12 @@ impl Scene for SphereTorque {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("sphere-torque", [self.inertia; 3], self.attitude)
+        rigid::check("sphere-torque", [self.inertia; 3], self.attitude)?;
+        let end_s = self.info().horizon_s;
+        let gained = Vector3::from(self.torque).norm() / self.inertia * end_s;
+        let started = Vector3::from(self.omega).norm();
+        let most = if started >= gained { ("omega", &self.omega) } else { ("torque", &self.torque) };
+        answerable::phase("sphere-torque", most, (started + gained) * end_s, end_s)
     }
 
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::growth::Law;
 use crate::observation::Observation;
 use crate::scene::{Balance, Entry, ExpectedGrowth, Info, RigidMotion, Scene, StabilityLimit};
+use crate::scenes::answerable;
 use crate::scenes::constant_force::lit;
 use crate::scenes::parameters::scene_parameters;
 use crate::scenes::rigid;
@@ -88,7 +89,11 @@ impl Scene for SymmetricTop {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("symmetric-top", self.inertia(), self.attitude)
+        rigid::check("symmetric-top", self.inertia(), self.attitude)?;
+        let [x, y, z] = self.omega;
+        let end_s = self.info().horizon_s;
+        let phase = x.hypot(y).hypot(2.0 * z) * end_s;
+        answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
