@@ -11,9 +11,11 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::observation::Observation;
 use crate::scene::{Balance, Entry, Info, RigidMotion, Scene};
+use crate::scenes::answerable;
 use crate::scenes::constant_force::lit;
 use crate::scenes::parameters::scene_parameters;
 use crate::scenes::rigid;
+use crate::special::scaled::Scaled;
 use crate::special::lagrange_top::LagrangeTop;
 
 scene_parameters! {
@@ -79,18 +81,11 @@ impl Scene for HeavyTop {
 
     fn check(&self) -> Result<(), Error> {
         rigid::check("heavy-top", self.inertia(), self.attitude)?;
-        let [w, x, y, z] = self.attitude;
-        let vertical = (x == 0.0 && y == 0.0) || (w == 0.0 && z == 0.0);
-        if vertical && (self.omega[0] != 0.0 || self.omega[1] != 0.0) {
-            return Err(Error::Parameter {
-                scene: "heavy-top".to_owned(),
-                parameter: "omega".to_owned(),
-                value: self.omega.map(|x| x.to_string()).join(","),
-                expected: "a top that starts on the vertical may only spin about it: tilt it, or give 0,0,omega_3"
-                    .to_owned(),
-            });
-        }
-        Ok(())
+        let end_s = self.info().horizon_s;
+        let of_omega = Vector3::from(self.omega).norm() * end_s;
+        answerable::phase("heavy-top", ("omega", &self.omega), of_omega, end_s)?;
+        let of_gravity = Scaled::of(self.mgl).over(Scaled::of(self.inertia_1)).sqrt().times(Scaled::of(end_s)).value();
+        answerable::phase("heavy-top", ("mgl", &self.mgl), of_gravity.to_f64(), end_s)
     }
 
     /// Energy, and the vertical component of the angular momentum: the others are not conserved.

@@ -16,3 +16,4 @@ pub mod lagrange_top;
 pub(crate) mod scaled;
 pub mod sphere_torque;
 pub mod symmetric_top;
+mod top_series;
