@@ -135,6 +135,7 @@ pub mod model;
 pub mod newton;
 pub mod pose;
 pub mod real;
+mod reduction;
 pub mod rigid_body;
 pub mod rotation;
 pub mod space;

@@ -5,6 +5,8 @@ use std::ops::Neg;
 
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 
+use crate::reduction::{LARGE, folded};
+
 /// A number of about 31 digits, the sum of two `f64`. `faer::fx128` is the same type.
 pub use qd::Quad as DoubleDouble;
 
@@ -228,7 +230,8 @@ fn taylor_double_double(x_squared: DoubleDouble) -> (DoubleDouble, DoubleDouble)
 }
 
 /// `qd` has no trigonometric functions: the argument is reduced modulo pi/2 with a three-part constant, divided
-/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6.
+/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6 and for |x| > 2^55, where all digits of
+/// pi that count are used.
 impl Real for DoubleDouble {
     #[inline(always)]
     fn lit(x: f64) -> Self {
@@ -246,9 +249,10 @@ impl Real for DoubleDouble {
         if !DoubleDouble::is_finite(self) {
             return (DoubleDouble::NAN, DoubleDouble::NAN);
         }
-        let quarters = (self.0 / HALF_PI[0]).round();
+        let (turned, angle) = if self.0.abs() < LARGE { (0, self) } else { folded(self) };
+        let quarters = (angle.0 / HALF_PI[0]).round();
         let k = DoubleDouble::from_f64(quarters);
-        let reduced = HALF_PI.iter().fold(self, |x, &part| x.sub_accurate(k * DoubleDouble::from_f64(part)));
+        let reduced = HALF_PI.iter().fold(angle, |x, &part| x.sub_accurate(k * DoubleDouble::from_f64(part)));
         let x = reduced * DoubleDouble::from_f64(0.25);
         let (mut cosine, sinc) = taylor_double_double(x * x);
         let mut sine = sinc * x;
@@ -256,7 +260,7 @@ impl Real for DoubleDouble {
             let twice = sine + sine;
             (sine, cosine) = (twice * cosine, DoubleDouble::ONE - twice * sine);
         }
-        match quarters.rem_euclid(4.0) as u8 {
+        match (quarters.rem_euclid(4.0) as u64 + turned) % 4 {
             0 => (sine, cosine),
             1 => (cosine, -sine),
             2 => (-sine, -cosine),
