@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
-use reports::{Claim, exit_code};
+use reports::Claim;
 
 use super::voice::{complain, note, of_flags, print};
 use super::{Common, color, list};
@@ -57,7 +57,7 @@ impl Ending {
         } else {
             color::painted(&plain(&judged.claims))
         };
-        Ok(Ending { text, note: None, code: exit_code(&judged.claims) })
+        Ok(Ending { text, note: None, code: judged.code() })
     }
 }
 
