@@ -245,7 +245,8 @@ fn is_judged(o: &OrderRow) -> bool {
 }
 
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
-    let theory = o.theory_constant?;
+    // An envelope has a claim of its own.
+    let theory = o.theory_constant.filter(|_| !o.theory_is_envelope)?;
     // Where the next term is of second order, the extrapolation overshoots by two thirds of its change.
     let bound = o.constant_change.map_or(f64::NAN, |change| change + ROUNDING * theory);
     let texts = [
