@@ -25,11 +25,11 @@ use methods::{EXPLICIT, IMPLICIT, MIDPOINT, RK4, SEMI_IMPLICIT, Steps, VERLET};
 use models::{Drive, Flat, Law, Loads, Wrong};
 use reports::Verdict;
 use scenes::any::AnyScene;
-use scenes::erased::{AnyMotion, BodyMotion, FlatMotion, Place};
+use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
 use scenes::errors::{self, Truth};
 use scenes::invariants::{Balance, Entry};
 use scenes::observation::{Observation, Quantity};
-use scenes::run::{Precision, Samples, Trajectory};
+use scenes::run::{Place, Precision, Samples, Trajectory};
 use verification::invariants::{parameter, violations};
 
 /// One fault, in the place of a built-in method.
@@ -68,7 +68,7 @@ impl Fault {
         self.driven(&model, motion.exact(0.0), ask, |s| motion.observe(s))
     }
 
-    fn turning<P: Place>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Trajectory {
+    fn turning<P: Place<f64>>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Trajectory {
         let body = Wrong { motion, loads: self.loads };
         let body: &dyn RigidBody<f64, Position = P> = &body;
         let model = WorldOmega::<_>::new(body);
@@ -145,8 +145,12 @@ impl Baseline {
         };
         let rows = Convergence::measure(&selection);
         let scene = by_id();
-        let reference =
-            |row: &Row| (row.steps, errors::run(scene.as_ref(), method, Precision::DoubleDouble, row.steps));
+        let reference = |row: &Row| {
+            (
+                row.steps,
+                errors::run(scene.as_ref(), method, Precision::DoubleDouble, row.steps).expect("a general method"),
+            )
+        };
         let mut references = BTreeMap::new();
         for row in &rows {
             references.entry(row.steps).or_insert_with(|| reference(row).1);

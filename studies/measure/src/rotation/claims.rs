@@ -7,11 +7,11 @@ use super::laws::nutation_factor;
 use super::long::{DRIFT_END_S, Fate, POINTS};
 use super::orders::{Seen, orders};
 use super::row::{Experiment, Row};
-use super::scheme::{Rule, Scheme};
 use crate::claim::{self, Evidence, largest};
 use crate::growth;
 use crate::study::{distinct, short};
 use scenes::run::Outcome;
+use scenes::scheme::{Rule, Scheme};
 use scenes::theory::Law;
 
 /// Scenes on which omega x I omega vanishes along the whole motion: there the model without the gyroscopic term is right.

@@ -3,10 +3,10 @@
 use reports::Claim;
 use serde::{Deserialize, Serialize};
 
-use super::scheme::Scheme;
 use crate::claim;
 use crate::claim::Evidence;
 use scenes::run::{Outcome, Trajectory};
+use scenes::scheme::Scheme;
 
 /// What was done to get a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
