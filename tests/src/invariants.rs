@@ -43,8 +43,8 @@ fn constant(scene: &dyn AnyScene, account: Account<'_>, entry: usize) -> Option<
     let end = scene.scene().info().horizon_s;
     (1..=LOOKS).find_map(|k| {
         let t = fx128::lit(end) * fx128::lit(f64::from(k)) / fx128::lit(f64::from(LOOKS));
-        let off = components(account, scene, t, entry).iter().zip(&start).map(|(a, b)| (*a - *b).to_f64().abs());
-        let off = off.sum::<f64>();
+        let now = components(account, scene, t, entry);
+        let off = now.iter().zip(&start).map(|(a, b)| (*a - *b).to_f64().abs()).sum::<f64>();
         (!(off <= EXACT * size)).then(|| format!("changes by {off:.3e} of {size:.3e} up to {} s", t.to_f64()))
     })
 }

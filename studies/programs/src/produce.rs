@@ -203,8 +203,9 @@ pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, .. } = source.product::<S>()?;
-    write(&out, common, files, &source.manifest)?;
-    Ok(Judged::of(claims, source.manifest))
+    let manifest = source.manifest.sealed(&files)?;
+    write(&out, common, files, &manifest)?;
+    Ok(Judged::of(claims, manifest))
 }
 
 /// Writes the files with plan and manifest, or of the files the charts alone.
@@ -214,7 +215,6 @@ pub(crate) fn write(
     mut files: Vec<(String, Vec<u8>)>,
     manifest: &Manifest,
 ) -> Result<(), Error> {
-    let manifest = manifest.clone().sealed(&files)?;
     files.push((provenance::PLAN.to_owned(), manifest.plan.to_toml()?.into_bytes()));
     files.push((provenance::MANIFEST.to_owned(), manifest.to_json()?.into_bytes()));
     if common.figures_only {
@@ -244,6 +244,7 @@ pub fn report(common: &Common) -> Result<Judged, Error> {
     let scenes = plan.selection()?.scenes;
     let html = page::html(sections, &scenes, about)?;
     files.push(("index.html".to_owned(), html.into_bytes()));
-    write(&out, common, files, &source.manifest)?;
-    Ok(Judged::of(claims, source.manifest))
+    let manifest = source.manifest.sealed(&files)?;
+    write(&out, common, files, &manifest)?;
+    Ok(Judged::of(claims, manifest))
 }

@@ -97,7 +97,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
             for i in 0..3 {
                 add(
                     format!("a{}", i + 2),
-                    Box::new(move |s, x| {
+                    Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { a, .. } = s {
                             a[i] *= x
                         }
@@ -105,7 +105,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                 );
                 add(
                     format!("c{}", i + 2),
-                    Box::new(move |s, x| {
+                    Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { c, .. } = s {
                             c[i] *= x
                         }
@@ -115,7 +115,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
             for i in 0..4 {
                 add(
                     format!("b{}", i + 1),
-                    Box::new(move |s, x| {
+                    Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { b, .. } = s {
                             b[i] *= x
                         }
@@ -127,7 +127,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
             for i in 0..kicks.iter().filter(|k| **k != 0.0).count() {
                 add(
                     format!("kick {i}"),
-                    Box::new(move |s, x| {
+                    Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Kdk { kicks, .. } = s {
                             kicks[i] *= x
                         }
@@ -136,7 +136,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
             }
             add(
                 "drift".to_owned(),
-                Box::new(|s, x| {
+                Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Kdk { drift, .. } = s {
                         *drift *= x
                     }
@@ -146,7 +146,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
         Steps::Theta { .. } => {
             add(
                 "theta".to_owned(),
-                Box::new(|s, x| {
+                Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Theta { theta, .. } = s {
                         *theta *= x
                     }
@@ -154,7 +154,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
             );
             add(
                 "time".to_owned(),
-                Box::new(|s, x| {
+                Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Theta { time, .. } = s {
                         *time *= x
                     }

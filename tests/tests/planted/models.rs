@@ -71,7 +71,7 @@ impl<const N: usize> Model<f64> for Flat<'_, N> {
         match self.law {
             Law::Sign => -of(t, s),
             Law::OnePercent => of(t, s) * 1.01,
-            Law::VelocityIgnored => of(t, &State { v: Vector::zero(), ..*s }),
+            Law::VelocityIgnored => of(t, &State { v: SVector::zeros(), ..*s }),
             Law::PositionIgnored => of(t, &State { q: SVector::from_element(1e-3), ..*s }),
             Law::TimeIgnored => of(0.0, s),
             Law::TimeOnePercent => of(1.01 * t, s),
@@ -112,7 +112,7 @@ impl<const N: usize> Model<f64> for Flat<'_, N> {
             }
             Law::ContactWithoutCondition => {
                 let first = once(after);
-                if touched(&first, &after) { State { q: Vector::zero(), ..first } } else { first }
+                if touched(&first, &after) { State { q: SVector::zeros(), ..first } } else { first }
             }
             _ => once(after),
         }

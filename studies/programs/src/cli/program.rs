@@ -181,7 +181,7 @@ fn perform<F: Args>(words: &Words, run: impl Fn(F) -> Result<Ending, Error>) -> 
     }
 }
 
-const CODES: &str = "Exit codes: 0 all claims hold, 1 a claim is broken (the files are written all the same) or an answer is no, \
+const CODES: &str = "Exit codes: 0 all claims hold, 1 a claim is broken or, with the default plan, not tested (the files are written all the same), or an answer is no, \
     2 wrong input, 130 interrupted.";
 
 fn command<F: Args>(words: &Words) -> Command {
