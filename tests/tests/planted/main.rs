@@ -5,19 +5,19 @@
 //! The faults act in f64: claims see them where f64 and double-double are compared. The gate's own mutants (`bounds --mutants`) are
 //! held to every row that names them; those not in this list are in bounds.rs.
 
+mod accounts;
 mod methods;
 mod models;
 
 use std::collections::BTreeMap;
 
-use faer::fx128;
 use gate::row::Kind;
 use gate::stepper::Ask;
 use gate::{Bounds, Candidate};
 use integrator::drive::SETTLE_EVERY;
 use integrator::methods::MethodId;
 use integrator::rigid_body::{RigidBody, RigidModel, WorldOmega};
-use integrator::{Method, Model, Real, State, Vector};
+use integrator::{Method, Model, State, Vector};
 use measure::convergence::{Convergence, Row};
 use measure::study::{Selection, Study};
 use measure::sweep::Progress;
@@ -27,10 +27,8 @@ use reports::Verdict;
 use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
 use scenes::errors::{self, Truth};
-use scenes::invariants::{Balance, Entry};
-use scenes::observation::{Observation, Quantity};
+use scenes::observation::Observation;
 use scenes::run::{Place, Precision, Samples, Trajectory};
-use verification::invariants::{parameter, violations};
 
 /// One fault, in the place of a built-in method.
 #[derive(Clone, Copy)]
@@ -387,7 +385,7 @@ fn every_planted_fault_is_seen() {
             survivors.push(name.clone());
         }
     }
-    let accounts = account_faults();
+    let accounts = accounts::faults();
     for (name, seen) in &accounts {
         println!("{name:<60} laws: {seen}");
         if *seen == 0 {
@@ -397,44 +395,4 @@ fn every_planted_fault_is_seen() {
     println!("{} faults, {} survive", all.len() + accounts.len(), survivors.len());
     assert!(survivors.is_empty(), "{survivors:#?}");
     assert!(all.len() + accounts.len() >= 89, "{}", all.len() + accounts.len());
-}
-
-type Change = fn(&dyn AnyScene, &Observation, &mut Entry);
-
-/// Faults of the account of a scene, with the number of scenes on which the laws see them.
-fn account_faults() -> Vec<(&'static str, usize)> {
-    let faults: [(&str, Change); 8] = [
-        ("account: all of it 1 % off", |_, _, e| e.value.iter_mut().for_each(|x| *x *= fx128::lit(1.01))),
-        ("account: all of it negative", |_, _, e| e.value.iter_mut().for_each(|x| *x = -*x)),
-        ("account: the first component is lost", |_, _, e| e.value[0] = fx128::ZERO),
-        ("account: rounded to f32", |_, _, e| {
-            e.value.iter_mut().for_each(|x| *x = fx128::from_f64(f64::from(x.0 as f32)));
-        }),
-        ("account: what is conserved is said not to be", |_, _, e| e.conserved = false),
-        ("account: what is not conserved is said to be", |_, _, e| e.conserved = true),
-        ("account: the kinetic energy is 1 % off", |scene, seen, e| kinetic(scene, seen, e, 0.01)),
-        ("account: the kinetic energy is negative", |scene, seen, e| kinetic(scene, seen, e, -2.0)),
-    ];
-    let count = |fault: Change| {
-        let sees = |scene: &dyn AnyScene| {
-            let wrong = |t: fx128, seen: &Observation| {
-                let mut entries = scene.scene().account(t, seen);
-                entries.iter_mut().for_each(|entry| fault(scene, seen, entry));
-                entries
-            };
-            !violations(scene, &wrong).is_empty()
-        };
-        scenes::all().iter().filter(|scene| sees(scene.as_ref())).count()
-    };
-    faults.map(|(name, fault)| (name, count(fault))).into()
-}
-
-/// Adds a part of m v^2 / 2 to an energy.
-fn kinetic(scene: &dyn AnyScene, seen: &Observation, entry: &mut Entry, part: f64) {
-    if entry.balance == Balance::Energy
-        && let [mass, ..] = parameter(scene, "mass")[..]
-    {
-        let square = seen.vector(Quantity::Velocity).iter().fold(fx128::ZERO, |sum, &v| sum + v * v);
-        entry.value[0] += square * fx128::lit(0.5 * mass * part);
-    }
 }
