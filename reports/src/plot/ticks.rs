@@ -35,6 +35,10 @@ fn nice_step(span: f64, most: usize) -> (f64, i32) {
 }
 
 fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
+    // Between two numbers that differ by nothing, or by more than there is, no step is nice.
+    if !(high - low > 0.0 && (high - low).is_finite()) {
+        return Vec::new();
+    }
     let (digit, exponent) = nice_step(high - low, most);
     let step = digit * power_of_ten(exponent);
     let largest = low.abs().max(high.abs()).log10().floor() as i32;
@@ -85,7 +89,8 @@ fn within_a_decade(low: f64, high: f64, most: usize) -> (Vec<Tick>, Vec<f64>) {
     }
     if major.len() < 2 {
         let even = linear(10_f64.powf(low), 10_f64.powf(high), most.min(6));
-        major = even.into_iter().map(|tick| Tick { at: tick.at.log10(), ..tick }).collect();
+        let mapped = even.into_iter().map(|tick| Tick { at: tick.at.log10(), ..tick });
+        major = mapped.filter(|tick| tick.at.is_finite()).collect();
     }
     (major, Vec::new())
 }
@@ -120,6 +125,19 @@ mod tests {
 
     fn labels(ticks: &[Tick]) -> Vec<&str> {
         ticks.iter().map(|tick| tick.label.as_str()).collect()
+    }
+
+    // Fails if: an axis about the least or the greatest of all numbers asks for digits without end.
+    #[test]
+    fn an_axis_at_the_ends_of_the_numbers_has_ticks_or_none() {
+        for at in [5e-324_f64, 1e-320, f64::MIN_POSITIVE, 1e308, f64::MAX] {
+            for width in [0.0, 1e-12, 0.1, 0.5, 3.0] {
+                let at = at.log10();
+                let (major, minor) = log(at - width, at + width, 8);
+                assert!(major.iter().map(|tick| tick.at).chain(minor).all(f64::is_finite), "{at} {width}");
+            }
+            assert!(linear(-at, at, 8).len() + linear(at, at, 8).len() < 1001);
+        }
     }
 
     #[test]
