@@ -2,7 +2,7 @@
 
 use scenes::any::AnyScene;
 use scenes::errors;
-use scenes::observation::{Observation, Quantity};
+use scenes::observation::{Observation, Quantity, largest, worse};
 use scenes::run::{Outcome, Trajectory};
 
 /// Looks at a run of the study.
@@ -44,8 +44,9 @@ impl<'a> Truth<'a> {
 
     /// The largest size of the configuration: |x| in m, an angle in rad, 1 for an attitude.
     pub fn scale(&self) -> f64 {
-        let of = |quantity| self.exact.looks().iter().map(move |seen| seen.scale(quantity)).fold(0.0, f64::max);
-        of(Quantity::Position).max(of(Quantity::Attitude))
+        let of =
+            |quantity| largest(self.exact.looks().iter().map(move |seen| seen.scale(quantity))).unwrap_or(f64::NAN);
+        worse(of(Quantity::Position), of(Quantity::Attitude))
     }
 
     /// Units of the errors of this scene: `m`, `rad`, or both.
@@ -83,5 +84,5 @@ fn over(distances: impl Iterator<Item = f64>) -> Option<Errors> {
 fn of_configuration(a: &Observation, b: &Observation) -> f64 {
     let distances = a.distances(b);
     let of_configuration = distances.iter().filter(|(q, _)| matches!(q, Quantity::Position | Quantity::Attitude));
-    of_configuration.map(|(_, d)| *d).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    of_configuration.map(|(_, d)| *d).reduce(worse).unwrap_or(f64::NAN)
 }
