@@ -10,7 +10,7 @@ use verification::invariants::{parameter, violations};
 type Change = fn(&dyn AnyScene, &Observation, &mut Entry);
 
 /// Faults of the account of a scene, with the number of scenes on which the laws see them.
-pub fn faults() -> Vec<(&'static str, usize)> {
+pub(crate) fn faults() -> Vec<(&'static str, usize)> {
     let faults: [(&str, Change); 8] = [
         ("account: all of it 1 % off", |_, _, e| e.value.iter_mut().for_each(|x| *x *= fx128::lit(1.01))),
         ("account: all of it negative", |_, _, e| e.value.iter_mut().for_each(|x| *x = -*x)),

@@ -4,7 +4,7 @@ use integrator::{Method, Model, Space, State, Tangent, Vector};
 
 /// The coefficients of a step.
 #[derive(Clone, Copy)]
-pub enum Steps {
+pub(crate) enum Steps {
     /// RK4 with Munthe-Kaas' brackets.
     Rk4 { a: [f64; 3], c: [f64; 3], b: [f64; 4], brackets: [f64; 2] },
     /// Kick, drift, kick: u = v0 + kick0 h a(t0), q1 = q0 + drift h velocity(q at the half, mix u + (1 - mix) v0),
@@ -14,20 +14,20 @@ pub enum Steps {
     Theta { theta: f64, time: f64, iterations: u32 },
 }
 
-pub const RK4: Steps = Steps::Rk4 {
+pub(crate) const RK4: Steps = Steps::Rk4 {
     a: [0.5, 0.5, 1.0],
     c: [0.5, 0.5, 1.0],
     b: [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
     brackets: [-0.25, -0.5],
 };
-pub const EXPLICIT: Steps =
+pub(crate) const EXPLICIT: Steps =
     Steps::Kdk { kicks: [1.0, 0.0], drift: 1.0, half: 0.0, mix: 0.0, times: [0.0, 1.0], ahead: 1.0, stale: false };
-pub const SEMI_IMPLICIT: Steps =
+pub(crate) const SEMI_IMPLICIT: Steps =
     Steps::Kdk { kicks: [1.0, 0.0], drift: 1.0, half: 0.0, mix: 1.0, times: [0.0, 1.0], ahead: 1.0, stale: false };
-pub const VERLET: Steps =
+pub(crate) const VERLET: Steps =
     Steps::Kdk { kicks: [0.5, 0.5], drift: 1.0, half: 0.5, mix: 1.0, times: [0.0, 1.0], ahead: 1.0, stale: false };
-pub const MIDPOINT: Steps = Steps::Theta { theta: 0.5, time: 0.5, iterations: 64 };
-pub const IMPLICIT: Steps = Steps::Theta { theta: 1.0, time: 1.0, iterations: 64 };
+pub(crate) const MIDPOINT: Steps = Steps::Theta { theta: 0.5, time: 0.5, iterations: 64 };
+pub(crate) const IMPLICIT: Steps = Steps::Theta { theta: 1.0, time: 1.0, iterations: 64 };
 
 impl<M: Model<f64>> Method<f64, M> for Steps {
     fn step(&self, m: &M, t: f64, h: f64, s: State<M::Config>) -> State<M::Config> {
@@ -75,7 +75,7 @@ fn rk4<M: Model<f64>>(m: &M, t: f64, h: f64, s: State<M::Config>, (a, c, b, brac
 }
 
 /// Every coefficient of a method 1 % off, and with the wrong sign: name and step.
-pub fn faults(of: Steps) -> Vec<(String, Steps)> {
+pub(crate) fn faults(of: Steps) -> Vec<(String, Steps)> {
     let mut all = Vec::new();
     for (how, factor) in [("1 % off", 1.01), ("negative", -1.0)] {
         for (name, change) in coefficients(of) {

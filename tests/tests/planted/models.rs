@@ -8,7 +8,7 @@ use scenes::erased::{BodyMotion, FlatMotion};
 
 /// What is wrong with a flat model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
+pub(crate) enum Law {
     Right,
     Sign,
     OnePercent,
@@ -31,7 +31,7 @@ pub enum Law {
 }
 
 impl Law {
-    pub const ALL: [(Law, &'static str); 18] = [
+    pub(crate) const ALL: [(Law, &'static str); 18] = [
         (Law::Sign, "the force has the wrong sign"),
         (Law::OnePercent, "the force is 1 % off"),
         (Law::VelocityIgnored, "the force of a body at rest"),
@@ -54,7 +54,7 @@ impl Law {
 }
 
 /// A flat scene with a fault.
-pub struct Flat<'a, const N: usize> {
+pub(crate) struct Flat<'a, const N: usize> {
     pub motion: FlatMotion<'a, N>,
     pub law: Law,
 }
@@ -121,7 +121,7 @@ impl<const N: usize> Model<f64> for Flat<'_, N> {
 
 /// What is wrong with a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Loads {
+pub(crate) enum Loads {
     Right,
     TorqueSign,
     TorqueOnePercent,
@@ -140,7 +140,7 @@ pub enum Loads {
 }
 
 impl Loads {
-    pub const ALL: [(Loads, &'static str); 16] = [
+    pub(crate) const ALL: [(Loads, &'static str); 16] = [
         (Loads::TorqueSign, "the torque has the wrong sign"),
         (Loads::TorqueOnePercent, "the torque is 1 % off"),
         (Loads::TorqueAtStart, "the torque is that of the start"),
@@ -161,7 +161,7 @@ impl Loads {
 }
 
 /// A body with a fault.
-pub struct Wrong<'a, P> {
+pub(crate) struct Wrong<'a, P> {
     pub motion: BodyMotion<'a, P>,
     pub loads: Loads,
 }
@@ -219,7 +219,7 @@ impl<P: Vector<f64>> RigidBody<f64> for Wrong<'_, P> {
 
 /// What is wrong with a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drive {
+pub(crate) enum Drive {
     Right,
     OneStepShort,
     OneStepMore,
@@ -232,7 +232,7 @@ pub enum Drive {
 }
 
 impl Drive {
-    pub const ALL: [(Drive, &'static str); 8] = [
+    pub(crate) const ALL: [(Drive, &'static str); 8] = [
         (Drive::OneStepShort, "the last step is not taken"),
         (Drive::OneStepMore, "a step more is taken"),
         (Drive::FirstTimeIsOne, "step i starts at the time (i + 1) h"),
