@@ -54,12 +54,6 @@ pub trait Study {
     /// Charts of the rows.
     fn figures(rows: &[Self::Row]) -> Vec<Figure>;
 
-    /// Whether a figure stands on the page itself; the others are files that the page links to.
-    fn is_on_page(figure: &Figure) -> bool {
-        let _ = figure;
-        true
-    }
-
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
 
@@ -119,11 +113,6 @@ pub fn short(x: Option<f64>) -> String {
 /// The palette index of a method: the same in every chart.
 pub fn color_of(method: MethodId) -> usize {
     MethodId::ALL.iter().position(|m| *m == method).unwrap_or(0)
-}
-
-/// The command that makes a figure of one scene again.
-pub fn command(study: &str, scene: &str) -> String {
-    format!("cargo run --release --bin {study} -- --scene {scene}")
 }
 
 /// The different values, in the order in which they first appear.

@@ -234,7 +234,8 @@ fn claim(seen: &Seen) -> Option<Claim> {
         format!("order {}, error {} {} at the finest step", short(seen.order), short(seen.finest), seen.unit),
         bound,
     ];
-    Some(claim::claim("adequacy", &id, texts, [evidence, Evidence::is(seen.finished)]))
+    let claim = claim::claim("adequacy", &id, texts, [evidence, Evidence::is(seen.finished)]);
+    Some(claim.on(base(&seen.scene)).by(&seen.method))
 }
 
 /// What the next term of the error, and rounding near [`FLOOR`], take from an order or add to it at the finest steps.

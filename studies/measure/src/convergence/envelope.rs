@@ -69,5 +69,5 @@ pub(super) fn envelope_claim(o: &OrderRow) -> Option<Claim> {
     ];
     let evidence = Evidence::within(o.constant, [bound * REACHED, bound * (1.0 + NEXT_TERMS)]);
     let id = format!("{}.{}.{}.envelope", o.scene, o.method, o.quantity.id());
-    Some(claim("convergence", &id, texts, [evidence]))
+    Some(claim("convergence", &id, texts, [evidence]).on(&o.scene).by(&o.method))
 }

@@ -92,9 +92,6 @@ impl Study for Convergence {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         figures::figures(rows)
     }
-    fn is_on_page(figure: &Figure) -> bool {
-        figure.id.starts_with("convergence-") || figure.id == "precision-torque-free-spin-attitude"
-    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         let mut claims = orders::claims(rows);
         claims.extend(rounding::claims(rows));

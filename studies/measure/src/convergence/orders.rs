@@ -236,6 +236,8 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
         format!("within {} of theory in double-double", first.tolerance),
     ];
     claim("convergence", &format!("{}.{}.order", first.scene, first.method), texts, judged.iter().map(decided))
+        .on(&first.scene)
+        .by(&first.method)
 }
 
 /// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by
@@ -261,7 +263,7 @@ fn constant_claim(o: &OrderRow) -> Option<Claim> {
         constant => Evidence::near(constant, Some(theory), bound),
     };
     let id = format!("{}.{}.{}.constant", o.scene, o.method, o.quantity.id());
-    Some(claim("convergence", &id, texts, [evidence]))
+    Some(claim("convergence", &id, texts, [evidence]).on(&o.scene).by(&o.method))
 }
 
 /// Rounding of a constant that is computed in f64 from theory.

@@ -182,8 +182,17 @@ fn judged(run: &[Row]) -> Option<Claim> {
     };
     let statement = format!("{} of {} on {} {statement}", row.drift.id(), row.method, row.scene);
     let id = format!("{}.{}.{}", row.scene, row.method, row.drift.id());
+    let numbers: Vec<f64> = match theory {
+        Law::Exponential => row.rate_per_s.into_iter().collect(),
+        _ => [row.ratio_low, row.ratio_high].into_iter().flatten().collect(),
+    };
     let evidence = evidence.into_iter().chain([Evidence::is(is_complete(run))]);
-    Some(claim("drift", &id, [statement, theory_text, measured, bound], evidence))
+    Some(
+        claim("drift", &id, [statement, theory_text, measured, bound], evidence)
+            .on(&row.scene)
+            .by(&row.method)
+            .with_numbers(numbers),
+    )
 }
 
 /// The rate is the slope of ln(E / E0), whose oscillation within a period is (w h) / 2 at most over hundreds of periods.

@@ -165,9 +165,6 @@ impl Study for DriftStudy {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         show::figures(rows)
     }
-    fn is_on_page(figure: &Figure) -> bool {
-        figure.id.ends_with("-energy")
-    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         laws::claims(rows)
     }

@@ -73,7 +73,7 @@ fn order_claims(rows: &[Row]) -> Vec<Claim> {
                 Some(_) => format!("{} {}", s.subject, short(s.order)),
                 None => format!("{} error {}", s.subject, short(s.finest)),
             });
-            claims.push(claim(
+            let made = claim(
                 &format!("{id}.{name}"),
                 [
                     match expected {
@@ -94,7 +94,8 @@ fn order_claims(rows: &[Row]) -> Vec<Claim> {
                     },
                 ],
                 evidence,
-            ));
+            );
+            claims.push(made.by(&id).with_numbers([seen.len() as f64]));
         }
     }
     claims
@@ -365,6 +366,8 @@ fn same_motion_claims(rows: &[Row]) -> Vec<Claim> {
                     ],
                     [Evidence::within(row.value, allowed)],
                 )
+                .on(&row.subject)
+                .by(method)
             })
         })
         .collect()

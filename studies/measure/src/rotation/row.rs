@@ -109,6 +109,7 @@ impl Row {
             self.value.map_or_else(|| "the run failed".to_owned(), |v| format!("{v:.12e} {}", self.unit)),
             format!("within {tolerance:.1e} of theory"),
         ];
-        Some(claim::claim("rotation", id, texts, [self.evidence(theory, tolerance)]))
+        let claim = claim::claim("rotation", id, texts, [self.evidence(theory, tolerance)]);
+        Some(claim.by(&self.scheme).with_numbers(self.value))
     }
 }

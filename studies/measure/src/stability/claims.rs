@@ -85,7 +85,8 @@ fn limit(row: &Row) -> Claim {
         format!("the bracket contains it and is narrower than {:.0} %", 100.0 * BRACKET),
     ];
     let id = format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id());
-    claim(&id, texts, [Evidence::is(bracket_agrees(row))])
+    let numbers = [row.low, row.high].into_iter().flatten();
+    claim(&id, texts, [Evidence::is(bracket_agrees(row))]).on(&row.scene).by(&row.method).with_numbers(numbers)
 }
 
 /// A number in words, where there is one.
@@ -103,6 +104,8 @@ fn rate(row: &Row) -> Claim {
     ];
     let ratio = row.measured.zip(row.theory).map(|(measured, theory)| measured / theory);
     claim(&format!("rate.{}.{}.{z}", row.scene, row.method), texts, [Evidence::near(ratio, Some(1.0), RATE)])
+        .on(&row.scene)
+        .by(&row.method)
 }
 
 fn unconditional(row: &Row) -> Claim {
@@ -116,7 +119,7 @@ fn unconditional(row: &Row) -> Claim {
         format!("difference at most {tolerance:.1e}"),
     ];
     let evidence = [Evidence::near(row.measured, row.theory, tolerance)];
-    claim(&format!("unconditional.{}.{}.{z}", row.method, row.unit), texts, evidence)
+    claim(&format!("unconditional.{}.{}.{z}", row.method, row.unit), texts, evidence).by(&row.method)
 }
 
 fn drag(row: &Row) -> Claim {
@@ -130,6 +133,7 @@ fn drag(row: &Row) -> Claim {
         format!("the bracket contains it and is narrower than {:.0} %", 100.0 * BRACKET),
     ];
     claim(&format!("quadratic-drag.{}", row.quantity.replace(' ', "-")), texts, [Evidence::is(holds)])
+        .on("quadratic-drag")
 }
 
 fn blow_up(row: &Row) -> Claim {

@@ -126,9 +126,6 @@ impl Study for Tradeoff {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         figures::all(rows)
     }
-    fn is_on_page(figure: &Figure) -> bool {
-        figures::ON_PAGE.contains(&figure.id.as_str())
-    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         claims::all(rows)
     }
