@@ -14,6 +14,7 @@ use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
 use crate::scene::Scene;
 use crate::timed;
 use crate::timed::{Lap, Laps};
+use crate::variation::{Leading, leading};
 
 /// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
 pub trait AnyScene: Send + Sync {
@@ -60,6 +61,9 @@ pub trait AnyScene: Send + Sync {
         let _ = (run, displacement, looks);
         None
     }
+
+    /// The leading errors of the methods whose local errors theory knows, up to `end_s`: see [`leading`].
+    fn leading(&self, end_s: f64) -> Vec<Leading>;
 
     /// The model and its exact motion in f64, of which only the space is known: for methods and models from outside.
     fn any_motion(&self) -> AnyMotion<'_>;
@@ -113,6 +117,11 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_displaced::<T, S>(&self.scene, run, displacement, looks)))
     }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        let (scene, info) = (&self.scene, self.scene.info());
+        let exact = |t| Motion::<fx128>::exact(scene, t);
+        leading::<S>(scene, end_s, info.time_scale_s, exact, |s| Motion::<fx128>::observe(scene, s))
+    }
     fn any_motion(&self) -> AnyMotion<'_> {
         <S as Model<f64>>::Config::erase(&self.scene)
     }
@@ -158,6 +167,11 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMoti
     }
     fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => run_step::<T, B>(&self.scene, run, stride)))
+    }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        let (model, info) = (WorldOmega::<&B>::new(&self.scene), self.scene.info());
+        let exact = |t| Motion::<fx128>::exact(&model, t);
+        leading(&model, end_s, info.time_scale_s, exact, |s| Motion::<fx128>::observe(&model, s))
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <B as RigidBody<f64>>::Position::erase(&self.scene)

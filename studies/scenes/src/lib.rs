@@ -24,5 +24,6 @@ pub mod special;
 pub mod stepping;
 pub mod theory;
 pub mod timed;
+pub mod variation;
 
 pub use catalogue::*;
