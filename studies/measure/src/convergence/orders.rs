@@ -3,11 +3,13 @@
 use reports::{Claim, Table, Verdict as Truth};
 use serde::{Deserialize, Serialize};
 
+use super::limit::{ROUNDING, judge, limit};
 use super::{HALVINGS, Row, envelope};
 use crate::error::Error;
 use crate::order;
 use crate::order::{Expected, Limits, Sample, Verdict};
 use crate::study::{Derived, short};
+use scenes::errors::CHECKPOINTS;
 use scenes::observation::Quantity;
 use scenes::run::Precision;
 
@@ -62,12 +64,28 @@ pub struct OrderRow {
     pub runs: usize,
     /// Runs in the window.
     pub window_points: Option<usize>,
-    /// lim error / h^theory_order, extrapolated linearly from the two smallest steps of the window.
+    /// lim error / h^theory_order: see [`super::limit`].
     pub constant: Option<f64>,
-    /// By how much the extrapolation changed it: a bound on what is left.
+    /// A bound on what the extrapolation leaves.
     pub constant_change: Option<f64>,
-    /// What theory predicts for it.
+    /// The largest error / h^theory_order of the sweep.
+    pub coarse_constant: f64,
+    /// What theory predicts for the limit.
     pub theory_constant: Option<f64>,
+    /// How far that may be off.
+    pub theory_doubt: f64,
+    /// The limit by the equation of first variation.
+    pub leading: Option<f64>,
+    /// How far that may be off.
+    pub leading_doubt: Option<f64>,
+    /// The order over the finest four runs above rounding.
+    pub finest_order: Option<f64>,
+    /// Whether every error is rounding.
+    pub is_rounding: bool,
+    /// The longest step of the finest runs that failed, s.
+    pub coarsest_failure_h_s: Option<f64>,
+    /// Natural time scale of the scene, s.
+    pub time_scale_s: f64,
     /// Largest error that is nothing but rounding.
     pub floor: Option<f64>,
     /// Unit of floor, and of constant times s^order.
@@ -105,6 +123,9 @@ pub fn orders(rows: &[Row]) -> Vec<OrderRow> {
         }
         sweep.push(row);
     }
+    for sweep in sweeps.values_mut() {
+        sweep.sort_by_key(|row| row.steps);
+    }
     let both = |key| [Measure::End, Measure::Max].map(|measure| order_of(&sweeps[key], measure));
     keys.iter().flat_map(both).collect()
 }
@@ -127,25 +148,26 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     }
     let tolerance = tolerance(first.precision, sweep.len());
     let expected = first.theory_order.map_or(Expected::Exact, |order| Expected::Order { order, tolerance });
-    // The scale may vanish where a quantity passes through zero; one unit of it stands in.
+    // A quantity that is zero all along has no scale of its own; one unit of it stands in.
     let scale = if first.scale > 0.0 { first.scale } else { 1.0 };
-    // One operation on the state where an order is sought; where there is no error but rounding, that of a whole run.
+    let unit = first.precision.epsilon() * scale;
+    // Where an order is sought a run's rounding is not known beforehand; where there is no error but rounding, that of a whole run.
     let operations = if first.theory_order.is_none() { first.steps as f64 } else { 1.0 };
-    let limits = Limits { rounding_unit: operations * first.precision.epsilon() * scale, saturation: scale };
+    let limits = Limits { rounding_unit: operations * unit, saturation: scale };
     let seen = order::observe(&samples, expected, limits);
     let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
-    let constant = seen.window.zip(first.theory_order).and_then(|(window, p)| {
-        let ratio = |i: usize| Some(samples[i].error? / samples[i].h_s.powf(p));
-        let (fine, next) = if samples[window.0].h_s < samples[window.1].h_s {
-            (window.0, window.0 + 1)
-        } else {
-            (window.1, window.1 - 1)
-        };
-        // c(h) = C + d h + ...: the line through two steps meets h = 0 at C.
-        let slope = (ratio(next)? - ratio(fine)?) / (samples[next].h_s - samples[fine].h_s);
-        let change = -slope * samples[fine].h_s;
-        Some((ratio(fine)? + change, change.abs()))
-    });
+    let steps = |s: &Sample| (first.h_s * first.steps as f64) / s.h_s;
+    let rounding = |s: &Sample| s.floor.max(ROUNDINGS * steps(s) * unit);
+    let limit = first.theory_order.and_then(|p| limit(comparable(&samples, sweep, measure), p, rounding));
+    let ratio = |s: &Sample| s.error.map(|e| e / s.h_s.powf(first.theory_order.unwrap_or(0.0)));
+    let (theory_constant, theory_doubt, leading) = match measure {
+        Measure::End => (first.theory_constant, first.theory_doubt, first.leading_end),
+        Measure::Max => (None, 0.0, first.leading_max),
+    };
+    // The largest error is taken at the checkpoints only where they are steps.
+    let at_checkpoints = sweep.iter().all(|row| row.steps < CHECKPOINTS || row.steps.is_multiple_of(CHECKPOINTS));
+    let leading = leading.filter(|_| measure == Measure::End || at_checkpoints);
+    let failed = samples.iter().rev().take_while(|s| s.error.is_none());
     OrderRow {
         scene: first.scene.clone(),
         method: first.method.clone(),
@@ -161,15 +183,40 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         window_to_h_s: step(|w| w.1),
         runs: sweep.len(),
         window_points: seen.window.map(|w| w.1 - w.0 + 1),
-        constant: constant.map(|c| c.0),
-        constant_change: constant.map(|c| c.1),
-        theory_constant: if measure == Measure::End { first.theory_constant } else { None },
+        constant: limit.map(|l| l.value),
+        constant_change: limit.map(|l| l.bound),
+        coarse_constant: samples.iter().filter_map(ratio).filter(|r| r.is_finite()).fold(0.0, f64::max),
+        theory_constant,
+        theory_doubt,
+        leading,
+        leading_doubt: first.leading_doubt,
+        finest_order: finest_order(&samples, rounding),
+        is_rounding: samples.iter().all(|s| s.error.is_some_and(|e| e <= rounding(s))),
+        coarsest_failure_h_s: failed.last().map(|s| s.h_s),
+        time_scale_s: first.time_scale_s,
         floor: seen.floor,
         unit: first.unit.clone(),
         verdict: seen.verdict,
         tolerance,
         note: seen.note,
     }
+}
+
+/// A step rounds a few times, and the motion carries it along.
+const ROUNDINGS: f64 = 16.0;
+
+/// The runs that are compared at the same times: of the largest errors those that pass every checkpoint, where there are enough.
+fn comparable<'a>(samples: &'a [Sample], sweep: &[&Row], measure: Measure) -> &'a [Sample] {
+    let first = sweep.iter().position(|row| row.steps >= CHECKPOINTS).unwrap_or(0);
+    if measure == Measure::Max && samples.len() - first >= 3 { &samples[first..] } else { samples }
+}
+
+/// The order over the finest four runs whose errors are clear of rounding.
+fn finest_order(samples: &[Sample], rounding: impl Fn(&Sample) -> f64) -> Option<f64> {
+    let is_clear = |s: &&Sample| s.error.is_some_and(|e| e.is_finite() && e > rounding(s));
+    let clear: Vec<&Sample> = samples.iter().filter(is_clear).collect();
+    let (fine, coarse) = (clear.last()?, clear.get(clear.len().checked_sub(4)?)?);
+    Some((coarse.error? / fine.error?).ln() / (coarse.h_s / fine.h_s).ln())
 }
 
 /// Every order as CSV; for a reader those in double-double, which no rounding disturbs.
@@ -222,7 +269,11 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
     let word = |o: &OrderRow| o.order.map_or_else(|| o.verdict.to_string(), |p| format!("{p:.3}"));
     let measured: Vec<String> =
         judged.iter().map(|o| format!("{} ({}) {}", o.quantity.id(), o.measure.id(), word(o))).collect();
-    let theory = |o: &&OrderRow| o.theory_order.map_or_else(|| "exact".to_owned(), |p| p.to_string());
+    let theory = |o: &&OrderRow| match o.theory_order {
+        None => "exact".to_owned(),
+        Some(p) if vanishes(o) => format!("at least {}", p + 1.0),
+        Some(p) => p.to_string(),
+    };
     let mut promised: Vec<String> = group.iter().map(theory).collect();
     promised.dedup();
     Claim {
@@ -233,12 +284,35 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
         measured: measured.join("; "),
         bound: format!("within {} of theory in double-double", first.tolerance),
         // Two runs have a slope, and nothing that could contradict it.
-        verdict: if judged.iter().all(|o| o.runs < 3) {
-            Truth::NotTested
-        } else {
-            Truth::from_comparison(judged.iter().all(|o| o.verdict.passes()))
-        },
+        verdict: if judged.iter().all(|o| o.runs < 3) { Truth::NotTested } else { together(&judged) },
     }
+}
+
+/// Broken where one sweep is; else not tested where one is not. An error at the end is at most the largest, so that the order of
+/// the largest is the least of the other where theory knows no constant of it.
+fn together(judged: &[&OrderRow]) -> Truth {
+    let of = |o: &OrderRow| match judge(o) {
+        Truth::Holds => Truth::Holds,
+        _ if o.measure == Measure::End && o.leading.is_none() && o.theory_order.is_some() && !o.theory_is_envelope => {
+            let largest = |x: &&&OrderRow| x.quantity == o.quantity && x.measure == Measure::Max;
+            judged.iter().find(largest).map_or(Truth::NotTested, |x| judge(x))
+        }
+        other => other,
+    };
+    let all: Vec<Truth> = judged.iter().map(|o| of(o)).collect();
+    let any = |verdict| all.contains(&verdict);
+    if any(Truth::Broken) {
+        Truth::Broken
+    } else if any(Truth::NotTested) {
+        Truth::NotTested
+    } else {
+        Truth::Holds
+    }
+}
+
+/// Whether theory knows that the leading term is zero, or too small to be seen.
+fn vanishes(o: &OrderRow) -> bool {
+    o.leading.zip(o.leading_doubt).is_some_and(|(c, doubt)| c + doubt <= 1e-9 * o.coarse_constant)
 }
 
 /// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by
@@ -249,8 +323,7 @@ fn is_judged(o: &OrderRow) -> bool {
 
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
     let (theory, measured, change) = (o.theory_constant?, o.constant?, o.constant_change?);
-    // Where the next term is of second order, the extrapolation overshoots by two thirds of its change.
-    let bound = change + ROUNDING * theory;
+    let bound = change + o.theory_doubt + ROUNDING * theory;
     Some(Claim {
         id: format!("convergence.{}.{}.{}.constant", o.scene, o.method, o.quantity.id()),
         study: "convergence".to_owned(),
@@ -261,6 +334,3 @@ fn constant_claim(o: &OrderRow) -> Option<Claim> {
         verdict: Truth::from_comparison((measured - theory).abs() <= bound),
     })
 }
-
-/// Rounding of a constant that is computed in f64 from theory.
-const ROUNDING: f64 = 1e-13;

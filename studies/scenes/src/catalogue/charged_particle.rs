@@ -18,7 +18,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
@@ -110,13 +110,14 @@ impl<T: Single> Motion<T> for ChargedParticle {
 
 impl Scene for ChargedParticle {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.gyration() / 2.0);
         Info {
             about: "a charge in crossed fields: the force depends on the velocity, and both Eulers gain energy alike",
             equation: r"m\,\dot{\mathbf v} = q\,(\mathbf E + \mathbf v\times\mathbf B)",
             source: "J. D. Jackson, Classical Electrodynamics (1999), 12.2 and 12.3",
-            horizon_s: 2.25,
+            horizon_s: pace.horizon_s,
             time_scale_s: 1.0 / self.gyration(),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -145,8 +146,8 @@ impl Scene for ChargedParticle {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.linear().theory(method, quantity, end_s)
     }
 
     fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {

@@ -107,6 +107,13 @@ impl Oscillation {
         rounded(Vector1::new(x), Vector1::new(v))
     }
 
+    /// The fastest of its rates, 1/s: of the free motion's exponents, and of the driving force where there is one.
+    pub(crate) fn fastest(&self) -> f64 {
+        let (g, w) = (self.decay.to_f64(), self.square.to_f64().sqrt());
+        let free = if g > w { g + (g * g - w * w).sqrt() } else { w };
+        if self.force.to_f64() == 0.0 { free } else { free.max(self.drive.to_f64()) }
+    }
+
     /// The same as a linear system.
     pub(crate) fn linear(&self) -> Linear {
         Linear::new(&Parts {

@@ -15,7 +15,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
@@ -90,14 +90,15 @@ impl<T: Single> Motion<T> for Oscillator {
 
 impl Scene for Oscillator {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.omega() / 2.0);
         let time_scale_s = 1.0 / self.omega();
         Info {
             about: "a mass on a spring with a general phase: explicit Euler gains energy, semi-implicit Euler does not",
             equation: r"m\,\ddot x = -k\,x",
             source: "elementary",
-            horizon_s: 2.75,
+            horizon_s: pace.horizon_s,
             time_scale_s,
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -107,8 +108,8 @@ impl Scene for Oscillator {
         vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let [x, v] = self.error_constants(method, self.info().horizon_s);
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        let [x, v] = self.error_constants(method, end_s);
         let constant = if quantity == Quantity::Position { x } else { v };
         Theory::with_constant(method, constant, "leading term of the method's exact solution on x'' = -w^2 x")
     }

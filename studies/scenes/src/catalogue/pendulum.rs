@@ -15,7 +15,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::elementary::{asinh, atan, sech, sinh};
 use crate::special::elliptic;
 use crate::special::jacobi::Modulus;
@@ -116,13 +116,16 @@ impl<T: Single> Motion<T> for Pendulum {
 
 impl Scene for Pendulum {
     fn info(&self) -> Info {
+        // Faster round and round than to and fro, it is the turning that a step has to follow.
+        let scale_s = time_scale(self.omega0().to_f64().max(0.25 * self.omega.abs()));
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at((1.0 / scale_s) / 2.5);
         Info {
             about: "a pendulum with wide swings: libration, rotation, and the slow passage between them",
             equation: r"\ddot\theta = -\frac{g}{l}\sin\theta",
             source: "Jacobi's elliptic functions (E. T. Whittaker, Analytical Dynamics (1937), section 44)",
-            horizon_s: 2.75,
-            time_scale_s: 1.0 / self.omega0().to_f64(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: scale_s,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -141,11 +144,11 @@ impl Scene for Pendulum {
 
     /// Semi-implicit Euler is leapfrog with a velocity that is h a0 / 2 off: error / h is the motion's answer to such a
     /// kick at the start, less a(T) / 2 for the velocity.
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         if method != MethodId::SemiImplicitEuler {
             return Theory::usual(method);
         }
-        let (t, step) = (fx128::lit(self.info().horizon_s), fx128::lit(2.0_f64.powi(-30)));
+        let (t, step) = (fx128::lit(end_s), fx128::lit(2.0_f64.powi(-30)));
         let square = self.omega0() * self.omega0();
         let acceleration = |angle: fx128| -square * angle.sin_cos().0;
         let (start, rate) = (fx128::lit(self.angle), fx128::lit(self.omega));

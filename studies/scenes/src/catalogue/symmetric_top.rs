@@ -17,7 +17,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::symmetric_top::SymmetricTop as Exact;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit};
@@ -80,13 +80,14 @@ impl<T: Single> RigidMotion<T> for SymmetricTop {
 
 impl Scene for SymmetricTop {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 1.6);
         Info {
             about: "a free body with an axis of symmetry: it precesses about the momentum at a constant rate",
             equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_1, I_3)",
             source: "elementary (Landau and Lifshitz, Mechanics, section 35)",
-            horizon_s: 2.25,
-            time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(Vector3::from(self.omega).norm()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
