@@ -21,10 +21,11 @@
 
 use faer::fx128;
 use integrator::methods::MethodId;
-use integrator::{Model, Real, Single, Space, State, Vector};
+use integrator::{Real, Single, Space, State, Vector};
 
 use crate::errors::CHECKPOINTS;
-use crate::observation::{Observation, Quantity};
+use crate::motion::Motion;
+use crate::observation::Quantity;
 
 /// What theory says of the leading error of one method in one quantity, in the quantity's unit / s^order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,14 +54,14 @@ pub const METHODS: [MethodId; 5] = [
 /// An error of configuration and velocity.
 type Pair<V> = [V; 2];
 
-/// The tangent of a model's space.
-type Tangent<M> = <<M as Model<fx128>>::Config as Space>::Tangent;
+/// A motion of which only the space is known: nothing here is timed.
+type AnyMotion<'a, Q> = &'a dyn Motion<fx128, Config = Q>;
 
 /// The exact motion at one time, and the local errors of [`METHODS`] there.
-struct Node<M: Model<fx128>> {
+struct Node<Q: Space> {
     t: fx128,
-    at: State<M::Config>,
-    local: [Pair<Tangent<M>>; METHODS.len()],
+    at: State<Q>,
+    local: [Pair<Q::Tangent>; METHODS.len()],
 }
 
 /// The time of a difference quotient as a part of the time scale: the quotient is off by its square, and by the rounding of
@@ -72,32 +73,30 @@ const DISPLACEMENT: f64 = 1e-9;
 const LEAST: f64 = 2.0;
 const IN_A_TIME_SCALE: f64 = 8.0;
 
-/// The leading errors up to `end_s` of a model whose velocity is what it stores, on the exact motion `exact`; none where the
+/// The leading errors up to `end_s` of a model whose velocity is what it stores; none where the
 /// motion is too long, or a number is not finite.
-pub fn leading<M: Model<fx128>>(
-    model: &M,
+pub fn leading<Q: Space<Scalar = fx128>>(
+    motion: &dyn Motion<fx128, Config = Q>,
     end_s: f64,
     time_scale_s: f64,
-    exact: impl Fn(fx128) -> State<M::Config>,
-    observe: impl Fn(&State<M::Config>) -> Observation,
 ) -> Vec<Leading> {
     let Some(steps) = steps(end_s, time_scale_s) else { return Vec::new() };
     let space = fx128::lit(end_s / (2 * steps) as f64);
     let scale_s = time_scale_s.min(end_s);
-    let nodes = nodes(model, space, steps, scale_s, &exact);
-    let size = |pick: fn(&Node<M>) -> Tangent<M>| nodes.iter().map(|node| size(pick(node))).fold(0.0, f64::max);
+    let nodes = nodes(motion, space, steps, scale_s);
+    let size = |pick: fn(&Node<Q>) -> Q::Tangent| nodes.iter().map(|node| size(pick(node))).fold(0.0, f64::max);
     // The Eulers' local errors hold the acceleration twice over.
     let speed = size(|node| node.at.v).max(size(|node| node.local[0][0]) * 2.0 * scale_s);
     let sizes = [speed * scale_s, speed];
     let mut all = Vec::new();
     for (m, &method) in METHODS.iter().enumerate() {
-        let slope = |node: &Node<M>, e: Pair<Tangent<M>>| {
+        let slope = |node: &Node<Q>, e: Pair<Q::Tangent>| {
             let [d_q, d_v] = node.local[m];
-            let drift = M::Config::plus_bracket(e[1] + d_q, fx128::ONE, node.at.v, e[0]);
-            [drift, derivative(model, node.t, &node.at, e, sizes) + d_v]
+            let drift = Q::plus_bracket(e[1] + d_q, fx128::ONE, node.at.v, e[0]);
+            [drift, derivative(motion, node.t, &node.at, e, sizes) + d_v]
         };
         let [fine, coarse] = [1, 2].map(|stride| propagate(&nodes, stride, space, slope));
-        all.extend(compare(method, &nodes, [&fine, &coarse], sizes, &observe));
+        all.extend(compare(motion, method, &nodes, [&fine, &coarse], sizes));
     }
     all
 }
@@ -109,27 +108,21 @@ fn steps(end_s: f64, time_scale_s: f64) -> Option<usize> {
 }
 
 /// The exact motion at every half step.
-fn nodes<M: Model<fx128>>(
-    model: &M,
-    space: fx128,
-    steps: usize,
-    scale_s: f64,
-    exact: &impl Fn(fx128) -> State<M::Config>,
-) -> Vec<Node<M>> {
+fn nodes<Q: Space<Scalar = fx128>>(motion: AnyMotion<'_, Q>, space: fx128, steps: usize, scale_s: f64) -> Vec<Node<Q>> {
     let lit = fx128::lit;
     let eps = lit((scale_s * TIME_STEP).log2().round().exp2());
-    let rate = |t: fx128| model.rate(t, &exact(t));
+    let rate = |t: fx128| motion.rate(t, &motion.exact(t));
     let node = |i: usize| {
         let t = space * lit(i as f64);
-        let at = exact(t);
-        let (before, a, after) = (rate(t - eps), model.rate(t, &at), rate(t + eps));
+        let at = motion.exact(t);
+        let (before, a, after) = (rate(t - eps), motion.rate(t, &at), rate(t + eps));
         let jerk = (after - before) * (lit(0.5) / eps);
         let snap = (after + before - a * lit(2.0)) * (fx128::ONE / (eps * eps));
         let (half, part) = (lit(0.5), |n: f64| fx128::ONE / lit(n));
-        let zero = Tangent::<M>::zero();
+        let zero = Q::Tangent::zero();
         let sizes = [size(at.v).max(size(a) * scale_s) * scale_s, size(at.v).max(size(a) * scale_s)];
-        let along = |by| derivative(model, t, &at, by, sizes);
-        let bracket = M::Config::plus_bracket(zero, part(12.0), at.v, a);
+        let along = |by| derivative(motion, t, &at, by, sizes);
+        let bracket = Q::plus_bracket(zero, part(12.0), at.v, a);
         let local = [
             [a * -half, jerk * -half],
             [a * half, jerk * half],
@@ -154,34 +147,34 @@ fn part_of<V: Vector<fx128>>([q, v]: Pair<V>, sizes: [f64; 2]) -> f64 {
 }
 
 /// (d rate / d q) e_q + (d rate / d v) e_v, by a displacement that is small beside `sizes`.
-fn derivative<M: Model<fx128>>(
-    model: &M,
+fn derivative<Q: Space<Scalar = fx128>>(
+    motion: AnyMotion<'_, Q>,
     t: fx128,
-    at: &State<M::Config>,
-    e: Pair<Tangent<M>>,
+    at: &State<Q>,
+    e: Pair<Q::Tangent>,
     sizes: [f64; 2],
-) -> Tangent<M> {
+) -> Q::Tangent {
     let part = part_of(e, sizes);
     if part == 0.0 {
-        return Tangent::<M>::zero();
+        return Q::Tangent::zero();
     }
     let h = fx128::lit((DISPLACEMENT / part).log2().round().exp2());
-    let rate = |h: fx128| model.rate(t, &State { q: at.q.retract(e[0], h), v: at.v.plus(e[1], h) });
+    let rate = |h: fx128| motion.rate(t, &State { q: at.q.retract(e[0], h), v: at.v.plus(e[1], h) });
     (rate(h) - rate(-h)) * (fx128::lit(0.5) / h)
 }
 
 /// e at the checkpoints after the start, by the classical method of order 4 with steps of 2 `stride` nodes.
-fn propagate<M: Model<fx128>>(
-    nodes: &[Node<M>],
+fn propagate<Q: Space<Scalar = fx128>>(
+    nodes: &[Node<Q>],
     stride: usize,
     space: fx128,
-    slope: impl Fn(&Node<M>, Pair<Tangent<M>>) -> Pair<Tangent<M>>,
-) -> Vec<Pair<Tangent<M>>> {
+    slope: impl Fn(&Node<Q>, Pair<Q::Tangent>) -> Pair<Q::Tangent>,
+) -> Vec<Pair<Q::Tangent>> {
     let lit = fx128::lit;
     let h = space * lit(2.0 * stride as f64);
-    let plus = |[q, v]: Pair<Tangent<M>>, k: Pair<Tangent<M>>, h: fx128| [q.plus(k[0], h), v.plus(k[1], h)];
+    let plus = |[q, v]: Pair<Q::Tangent>, k: Pair<Q::Tangent>, h: fx128| [q.plus(k[0], h), v.plus(k[1], h)];
     let every = (nodes.len() - 1) / CHECKPOINTS as usize;
-    let mut e = [Tangent::<M>::zero(); 2];
+    let mut e = [Q::Tangent::zero(); 2];
     let mut seen = Vec::new();
     for i in (0..nodes.len() - 1).step_by(2 * stride) {
         let (from, middle, to) = (&nodes[i], &nodes[i + stride], &nodes[i + 2 * stride]);
@@ -199,21 +192,21 @@ fn propagate<M: Model<fx128>>(
 }
 
 /// From both propagations to the sizes of the errors in every quantity: extrapolated, the coarser being sixteen times as wrong.
-fn compare<M: Model<fx128>>(
+fn compare<Q: Space<Scalar = fx128>>(
+    motion: AnyMotion<'_, Q>,
     method: MethodId,
-    nodes: &[Node<M>],
-    [fine, coarse]: [&[Pair<Tangent<M>>]; 2],
+    nodes: &[Node<Q>],
+    [fine, coarse]: [&[Pair<Q::Tangent>]; 2],
     sizes: [f64; 2],
-    observe: &impl Fn(&State<M::Config>) -> Observation,
 ) -> Vec<Leading> {
     let every = (nodes.len() - 1) / CHECKPOINTS as usize;
-    let length = |k: usize, e: Pair<Tangent<M>>| -> Vec<(Quantity, f64)> {
+    let length = |k: usize, e: Pair<Q::Tangent>| -> Vec<(Quantity, f64)> {
         let at = &nodes[(k + 1) * every].at;
         let part = part_of(e, sizes);
         let h = if part == 0.0 { 1.0 } else { (DISPLACEMENT / part).log2().round().exp2() };
         let step = fx128::lit(h);
         let moved = State { q: at.q.retract(e[0], step), v: at.v.plus(e[1], step) };
-        observe(&moved).distances(&observe(at)).into_iter().map(|(q, d)| (q, d / h)).collect()
+        motion.observe(&moved).distances(&motion.observe(at)).into_iter().map(|(q, d)| (q, d / h)).collect()
     };
     let mut all: Vec<Leading> = Vec::new();
     for (k, (&a, &b)) in fine.iter().zip(coarse).enumerate() {
