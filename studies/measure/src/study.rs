@@ -70,6 +70,10 @@ pub trait Study {
     /// How it answers it, for a reader of the report.
     const INTRO: &'static str;
 
+    /// The keys of a plan that it heeds besides `scene`, `method`, `set` and `quick`. A plan of this study alone that gives another
+    /// is refused.
+    const HEEDS: &'static [&'static str];
+
     /// Runs what it needs.
     fn measure(selection: &Selection) -> Vec<Self::Row>;
 

@@ -138,6 +138,23 @@ impl Plan {
         }
     }
 
+    /// Refuses a key that the study `id`, which heeds those of `heeds`, would not look at: no run does less than its plan says.
+    ///
+    /// # Errors
+    /// The first such key.
+    pub fn heeded(&self, id: &str, heeds: &[&str]) -> Result<(), Error> {
+        let given = [
+            ("precision", !self.precision.is_empty()),
+            ("steps", !self.steps.is_empty()),
+            ("for", self.for_s.is_some()),
+        ];
+        let unheard = given.into_iter().find(|(key, is_given)| *is_given && !heeds.contains(key));
+        unheard.map_or(Ok(()), |(key, _)| {
+            let message = format!("{id} runs what it needs, whatever is given; leave it out");
+            Err(Error::plan(format!("--{key}"), message))
+        })
+    }
+
     /// The flags beside `--scene` that run this plan again on one scene (on all where it is `None`), with a blank before each.
     pub(crate) fn flags(&self, scene: Option<&str>) -> String {
         let mut flags = String::new();

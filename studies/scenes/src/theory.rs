@@ -101,6 +101,8 @@ impl Theory {
 pub struct ExpectedGrowth {
     /// The law.
     pub law: Law,
+    /// The length of a run from which on the law is to be seen, s.
+    pub seen_after_s: f64,
     /// For a bounded law the bounds of value / start, for an exponential one its rate in 1/s twice.
     pub bounds: Option<[f64; 2]>,
     /// Where it comes from.

@@ -69,6 +69,8 @@ struct Node<Q: Space> {
 const TIME_STEP: f64 = 1e-6;
 /// The length of a displacement as a part of the state: its derivative is off by the square.
 const DISPLACEMENT: f64 = 1e-9;
+/// Roundings in a rate on the exact motion.
+const ROUNDINGS: f64 = 1024.0;
 /// Steps of the coarser propagation between two checkpoints, at least, and of the finer one in one time scale.
 const LEAST: f64 = 2.0;
 const IN_A_TIME_SCALE: f64 = 8.0;
@@ -96,7 +98,15 @@ pub fn leading<Q: Space<Scalar = fx128>>(
             [drift, derivative(motion, node.t, &node.at, e, sizes) + d_v]
         };
         let [fine, coarse] = [1, 2].map(|stride| propagate(&nodes, stride, space, slope));
-        all.extend(compare(motion, method, &nodes, [&fine, &coarse], sizes));
+        let mut of_method = compare(motion, method, &nodes, [&fine, &coarse], sizes);
+        // What rounding of the quotients leaves of a local error, gathered over the run.
+        let noise = ROUNDINGS * <fx128 as Single>::EPSILON / TIME_STEP.powi(method.order() as i32);
+        let gathered = noise * end_s / scale_s / scale_s.powi(method.order() as i32);
+        for one in &mut of_method {
+            let is_rate = matches!(one.quantity, Quantity::Velocity | Quantity::AngularVelocity);
+            one.doubt += gathered * if is_rate { speed } else { speed * end_s.max(scale_s) };
+        }
+        all.extend(of_method);
     }
     all
 }

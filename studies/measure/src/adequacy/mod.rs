@@ -53,6 +53,7 @@ pub struct Adequacy;
 impl Study for Adequacy {
     type Row = Row;
     const ID: &'static str = "adequacy";
+    const HEEDS: &'static [&'static str] = &["steps", "for"];
     const ABOUT: &'static str =
         "Compares models of a scene, from the least to the full one, with the full exact motion";
     const EXAMPLES: &'static str = "adequacy --scene heavy-top

@@ -46,7 +46,7 @@ const TOO_LOW: f64 = 0.5;
 const COARSE: f64 = 0.25;
 
 /// Whether one sweep shows what theory says.
-pub(super) fn judge(o: &OrderRow) -> Truth {
+pub fn judge(o: &OrderRow) -> Truth {
     if o.theory_order.is_none() || o.theory_is_envelope {
         return Truth::from_comparison(o.verdict.passes());
     }

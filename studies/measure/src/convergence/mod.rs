@@ -5,7 +5,7 @@ mod figures;
 mod limit;
 mod orders;
 
-pub use limit::{Limit, limit};
+pub use limit::{Limit, judge, limit};
 pub use orders::{Measure, OrderRow, orders, tolerance};
 
 use integrator::methods::MethodId;
@@ -85,6 +85,7 @@ pub struct Convergence;
 impl Study for Convergence {
     type Row = Row;
     const ID: &'static str = "convergence";
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "for"];
     const ABOUT: &'static str = "Sweeps the step on scenes with exact solutions and measures the order of convergence";
     const EXAMPLES: &'static str = "convergence --scene oscillator --method rk4
         convergence --scene torque-free-spin --precision f64 --out /tmp/spin

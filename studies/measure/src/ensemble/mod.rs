@@ -84,6 +84,7 @@ pub struct Ensemble;
 impl Study for Ensemble {
     type Row = Row;
     const ID: &'static str = "ensemble";
+    const HEEDS: &'static [&'static str] = &["precision", "steps"];
     const TITLE: &'static str = "How wrong is it, from anywhere? Ensembles";
     const INTRO: &'static str = "One start may be lucky. Here each scene is started from many states, drawn by its rule from a \
         seed, and its errors at the end are ranked: the median, the 95th percentile and the worst, and where the worst one started. \

@@ -35,7 +35,7 @@ pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
     if let Some(count) = flags.ensemble {
         return Some(ensemble::run(common, count, flags.seed));
     }
-    (question != Question::default()).then(|| {
+    (Question { duration_s: None, ..question } != Question::default()).then(|| {
         question.check(!common.plan.scene.is_empty())?;
         common.answers()?;
         let (selection, is_chosen) = (common.selection()?, !common.plan.precision.is_empty());

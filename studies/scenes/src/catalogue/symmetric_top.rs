@@ -10,6 +10,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -92,18 +93,24 @@ impl Scene for SymmetricTop {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("symmetric-top", self.inertia(), self.attitude)
+        rigid::check("symmetric-top", self.inertia(), self.attitude)?;
+        let [x, y, z] = self.omega;
+        let end_s = self.info().horizon_s;
+        let phase = x.hypot(y).hypot(2.0 * z) * end_s;
+        answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account(self.inertia(), seen, fx128::ZERO, true, true)
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
         let known = method == MethodId::SemiImplicitEuler && balance == Balance::Energy && self.nutates();
+        let x = (self.inertia_3 / self.inertia_1 - 1.0) * self.omega[2] * h_s;
         known.then_some(ExpectedGrowth {
             law: Law::Exponential,
-            bounds: None,
+            bounds: None, // Before that exp(r t) - 1 is r t.
+            seen_after_s: 8.0 * h_s / (x * x).ln_1p(),
             reason: "omega_3 stays, omega_1^2 + omega_2^2 grows by 1 + x^2 a step, x = (I3/I1 - 1) omega_3 h",
         })
     }
