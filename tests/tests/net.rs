@@ -5,6 +5,8 @@
 
 use std::fmt::Write;
 
+use gate::mutants::Mutant;
+use gate::stepper::{Ask, Stepper};
 use integrator::methods::MethodId;
 use measure::convergence::{Convergence, Row, judge, orders};
 use measure::drift::DriftStudy;
@@ -13,6 +15,7 @@ use measure::study::{Selection, Study};
 use measure::sweep::Progress;
 use reports::{Claim, Verdict};
 use scenes::any::AnyScene;
+use scenes::errors::Truth;
 use scenes::parameters::Range;
 use scenes::run::Precision;
 use scenes::scheme::Scheme;
@@ -175,4 +178,69 @@ fn no_correct_method_gets_a_broken_claim_whatever_the_parameters() {
         })
         .collect();
     assert!(failed.is_empty(), "{} broken:\n{}", failed.len(), failed.join("\n"));
+}
+
+/// The rows of a wrong method in f64, judged as those of the right one: its rounding is that of the right one.
+fn rows_of_mutant(scene: &dyn AnyScene, right: &[Row], mutant: Mutant, stepper: Stepper) -> Option<Vec<Row>> {
+    let end_s = scene.scene().info().horizon_s;
+    let truth = Truth::of(scene, end_s);
+    let candidate = mutant.of(stepper);
+    let mut steps: Vec<u64> = right.iter().map(|row| row.steps).collect();
+    steps.dedup();
+    let mut all = Vec::new();
+    for steps in steps {
+        let ask = Ask { scene, precision: Precision::F64, end_s, steps, stride: truth.stride(steps) };
+        let run = candidate.run(&ask)?;
+        for errors in truth.compare(scene, steps, &run, &run) {
+            let same = |row: &&Row| row.steps == steps && row.quantity == errors.quantity;
+            let row = right.iter().find(same)?;
+            all.push(Row { error_end: errors.end, error_max: errors.max, outcome: run.outcome, ..row.clone() });
+        }
+    }
+    Some(all)
+}
+
+/// Whether the errors of the two differ by more than a hundredth of them, clear of rounding, in some quantity at the finest step.
+fn differ(right: &[Row], wrong: &[Row]) -> bool {
+    let finest = right.iter().map(|row| row.steps).max();
+    right.iter().zip(wrong).filter(|(a, _)| Some(a.steps) == finest).any(|(a, b)| {
+        let (Some(x), Some(y), Some(rounding)) = (a.error_max, b.error_max, a.rounding_max) else { return true };
+        (x - y).abs() > 0.01 * x.max(y) && x.max(y) > 4096.0 * rounding.max(f64::EPSILON * a.scale)
+    })
+}
+
+/// Faults of rounding are the business of bounds on rounding, and what no method does wrong is none of convergence.
+const SEEN_IN_ROUNDING: [Mutant; 3] = [Mutant::AccumulatedTime, Mutant::SingleAccumulation, Mutant::NotNormalised];
+
+// Fails if: the yardstick of the verdicts has grown so long that a fault fits below it.
+#[test]
+fn no_built_in_mutant_stays_green_whatever_the_parameters() {
+    use rayon::prelude::*;
+    let survivors: Vec<String> = (0..draws())
+        .into_par_iter()
+        .flat_map_iter(|i| {
+            let id = scenes::IDS[i as usize % scenes::IDS.len()];
+            let Some((scene, flags)) = drawn(id, &mut Random(i)) else { return Vec::new() };
+            let selection = selection(scene, Precision::F64);
+            let rows = Convergence::measure(&selection);
+            let scene = selection.scenes[0].as_ref();
+            let mut alive = Vec::new();
+            for stepper in Stepper::all(scene) {
+                let Some(method) = stepper.of_theory() else { continue };
+                let right: Vec<Row> = rows.iter().filter(|row| row.method == method.id()).cloned().collect();
+                for &mutant in Mutant::ALL {
+                    if SEEN_IN_ROUNDING.contains(&mutant) || !mutant.applies(stepper, scene, Precision::F64) {
+                        continue;
+                    }
+                    let Some(wrong) = rows_of_mutant(scene, &right, mutant, stepper) else { continue };
+                    let green = orders(&wrong).iter().all(|o| judge(o) == Verdict::Holds);
+                    if green && differ(&right, &wrong) {
+                        alive.push(format!("[{i}] {flags}\n    {} under {}", method.id(), mutant.id()));
+                    }
+                }
+            }
+            alive
+        })
+        .collect();
+    assert!(survivors.is_empty(), "{} stay green:\n{}", survivors.len(), survivors.join("\n"));
 }
