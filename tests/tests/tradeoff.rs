@@ -27,6 +27,7 @@ fn selection(ids: &[&str]) -> Selection {
         methods: MethodId::ALL.to_vec(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
+        end_s: None,
         quick: false,
         progress: Progress::silent(),
     }

@@ -188,6 +188,7 @@ fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
 /// # Errors
 /// Bad input, or an output that cannot be written.
 pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
+    common.plan.heeded(S::ID, S::HEEDS)?;
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, .. } = source.product::<S>()?;

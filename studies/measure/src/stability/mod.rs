@@ -134,6 +134,7 @@ pub struct Stability;
 impl Study for Stability {
     type Row = Row;
     const ID: &'static str = "stability";
+    const HEEDS: &'static [&'static str] = &["precision"];
     const ABOUT: &'static str = "Measures the largest stable step of methods on scenes and holds it against theory. With --step or --rate, or with \
         both --scene and --method, it answers for these and writes no files";
     const EXAMPLES: &'static str =

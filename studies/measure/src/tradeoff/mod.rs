@@ -98,6 +98,7 @@ pub struct Tradeoff;
 impl Study for Tradeoff {
     type Row = Row;
     const ID: &'static str = "tradeoff";
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "for"];
     const ABOUT: &'static str = "Charges methods for their errors, in evaluations and in time. With --error or --budget-us it gives advice for a \
         scene, which is run before it is given, and writes no files. Errors are the largest over the run: of positions in m, of attitudes \
         and angles in rad, the larger where a scene has both";
