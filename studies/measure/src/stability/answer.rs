@@ -55,6 +55,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     line(format!("{} with {} in {}", stepping.scene.id(), stepping.method.title(), stepping.precision.id()));
     let linear = amplification::limit(stepping);
     let theory = linear.and_then(limits::number);
+    let trial = linear.map(|limit| limits::Trial::of(stepping, limit));
     let found = match linear {
         Some(limit) => limits::measure(stepping, limit),
         None => measure_nonlinear(stepping.scene, 0.0, |end_s, steps| {
@@ -71,9 +72,13 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
         line(format!("  closed form: {} ({reason})", limits::number(limit).map_or_else(String::new, seconds)));
     }
     let limit_s = match found {
+        _ if trial.is_some_and(|trial| !trial.sees) => {
+            line("  not measured: the growth beyond the limit is too slow to show in a run".to_owned());
+            theory.unwrap_or(0.0)
+        }
         Found::NoStep { tried_s } => {
             line(format!("  measured: no stable step; {} s fails already", significant(tried_s)));
-            0.0
+            theory.unwrap_or(0.0)
         }
         Found::Bracket { low_s, high_s } => {
             line(format!(
@@ -83,13 +88,16 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
                 significant(low_s / scale),
                 significant(high_s / scale)
             ));
-            theory.filter(|t| low_s <= *t && *t <= high_s).unwrap_or(low_s)
+            theory.unwrap_or(low_s)
         }
         Found::Unlimited { tried_s } => {
             line(format!("  measured: no limit found; {} s holds still", significant(tried_s)));
-            f64::INFINITY
+            theory.unwrap_or(f64::INFINITY)
         }
     };
+    if let Some(trial) = trial {
+        line(format!("  judged over {} steps: growth of less than {:.1e} per step would not show", trial.patience, trial.growth()));
+    }
     if let Some(step) = question.step_s {
         let stable = step <= limit_s;
         answer.stable &= stable;
