@@ -42,7 +42,7 @@ fn a_step_for_rigid_bodies_allocates_nothing() {
     let scene = scenes::by_id("heavy-top").expect("a scene");
     for &step in RigidStep::ALL {
         let run = |steps| Run::new(step, Precision::F64, 1.0 / 64.0, steps);
-        let [few, many] = STEPS.map(|steps| allocations(|| drop(scene.run_step(&run(steps), steps))));
+        let [few, many] = STEPS.map(|steps| allocations(|| drop(scene.run(&run(steps), steps))));
         assert_eq!(many, few, "{}", step.id());
     }
 }

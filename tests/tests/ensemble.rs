@@ -13,10 +13,10 @@ use measure::ensemble::draw::{Members, draw, with_a_rule};
 use measure::ensemble::lanes::{Coordinates, Eight, WIDTH, run_pack, runs_in_lanes};
 use measure::ensemble::random::Generator;
 use measure::ensemble::{Row, measure};
-use programs::cli::ensemble::ensemble;
 use measure::study::Selection;
 use measure::sweep::Progress;
 use nalgebra::{Matrix3, Vector1, Vector2, Vector3};
+use programs::cli::ensemble::ensemble;
 use reports::write_csv;
 use scenes::observation::{Observation, Quantity, Value};
 use scenes::run::{Precision, Run};
@@ -56,7 +56,10 @@ fn a_lane_has_the_bits_of_its_member_alone_in_every_scene_and_method() {
             let ends = ends.concat();
             assert_eq!(ends.len(), MEMBERS);
             for (i, end) in ends.iter().enumerate() {
-                let alone = members.alone(i).run(&Run::new(method, Precision::F64, end_s, STEPS), STEPS);
+                let alone = members
+                    .alone(i)
+                    .run(&Run::new(method, Precision::F64, end_s, STEPS), STEPS)
+                    .expect("a general method");
                 let (end, alone) = (end.as_ref().map(bits), alone.end().map(bits));
                 assert!(end.is_some() && end == alone, "{id} {} member {i}: {end:?} {alone:?}", method.id());
             }
@@ -241,7 +244,7 @@ fn the_reported_start_has_the_reported_error() {
             scene.scene_mut().set(id, name, value).expect("a parameter");
         }
         let end_s = scene.scene().info().horizon_s;
-        let run = scene.run(&Run::new(MethodId::Rk4, Precision::F64, end_s, STEPS), STEPS);
+        let run = scene.run(&Run::new(MethodId::Rk4, Precision::F64, end_s, STEPS), STEPS).expect("a general method");
         let exact = scene.exact(faer::fx128::lit(end_s));
         let errors = run.end().expect("finished").distances(&exact);
         let error = errors.iter().find(|(q, _)| *q == quantity).map(|(_, error)| *error);

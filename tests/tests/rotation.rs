@@ -178,7 +178,7 @@ fn without_the_gyroscopic_term_energy_and_momentum_are_conserved_and_the_motion_
     let end_s = scene.scene().info().horizon_s;
     let exact = scene.exact(integrator::Real::lit(end_s));
     let error = |scheme: Scheme, steps: u64| {
-        let run = scheme.run(scene.as_ref(), end_s, steps, steps).expect("a rigid body");
+        let run = scene.run(&Run::new(scheme, Precision::F64, end_s, steps), steps).expect("a rigid body");
         run.end().expect("finite").distances(&exact)[0].1
     };
     // Not by the last digit, but by what is left of the motion after a few thousandths of a radian a step.

@@ -9,10 +9,10 @@ use measure::stability::bisect::Found;
 use measure::stability::{amplification, limits};
 use scenes::any::AnyScene;
 use scenes::erased::{
-    AnyMotion, BodyMotion, ErasedBody, FlatModel, FlatMotion, OnBodyOmega, OnFlatScenes, OnWorldOmega, Place,
+    AnyMotion, BodyMotion, ErasedBody, FlatModel, FlatMotion, OnBodyOmega, OnFlatScenes, OnWorldOmega,
 };
 use scenes::observation::Observation;
-use scenes::run::{Precision, Schedule, Trajectory};
+use scenes::run::{Place, Precision, Schedule, Trajectory};
 use scenes::stepping::Stepping;
 
 /// What can be held to bounds.
@@ -100,12 +100,12 @@ pub(super) fn on_flat<'a, const N: usize, A: Method<f64, FlatModel<'a, N>>>(
 }
 
 /// A body of which only the kind of its position is known, with a count of what it is asked.
-pub(super) fn counted<'a, P: Place>(motion: BodyMotion<'a, P>) -> ErasedBody<'a, P> {
+pub(super) fn counted<'a, P: Place<f64>>(motion: BodyMotion<'a, P>) -> ErasedBody<'a, P> {
     Counted::new(motion as &dyn RigidBody<f64, Position = P>)
 }
 
 /// Runs a method on a rigid body in what the model stores.
-pub(super) fn turning<'a, P: Place, M: RigidModel<f64, Body = ErasedBody<'a, P>>, A: Method<f64, M>>(
+pub(super) fn turning<'a, P: Place<f64>, M: RigidModel<f64, Body = ErasedBody<'a, P>>, A: Method<f64, M>>(
     method: &A,
     model: &M,
     motion: BodyMotion<'a, P>,

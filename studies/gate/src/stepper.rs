@@ -105,14 +105,14 @@ impl Stepper {
     /// Runs; `None` where the scene cannot be stepped so.
     pub fn run(self, ask: &Ask<'_>) -> Option<Trajectory> {
         let &Ask { scene, precision, end_s, steps, stride } = ask;
+        scene.run(&Run::new(self.scheme(), precision, end_s, steps), stride)
+    }
+
+    /// How a scene is stepped.
+    pub fn scheme(self) -> Scheme {
         match self {
-            Stepper::Flat(method) => Some(scene.run(&Run::new(method, precision, end_s, steps), stride)),
-            Stepper::Turning(Scheme { rule: Rule::General(method), storage, update }) => {
-                Some(scene.run(&Run::new(method, precision, end_s, steps).storing(storage, update), stride))
-            }
-            Stepper::Turning(Scheme { rule: Rule::Rigid(step), storage, update }) => {
-                scene.run_step(&Run::new(step, precision, end_s, steps).storing(storage, update), stride)
-            }
+            Stepper::Flat(method) => method.into(),
+            Stepper::Turning(scheme) => scheme,
         }
     }
 }

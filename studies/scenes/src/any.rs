@@ -1,16 +1,15 @@
 //! A scene of which nothing is known at compile time, and the two kinds of scene that become one.
 
 use faer::fx128;
-use integrator::methods::RigidStep;
-use integrator::rigid_body::{RigidBody, WorldOmega};
+use integrator::rigid_body::{AttitudeUpdate, RigidBody, WorldOmega};
 use integrator::{Model, Real};
 
 use crate::displaced::run_displaced;
-use crate::erased::{AnyMotion, FlatSpace, Place};
+use crate::erased::{AnyMotion, ErasedPlace, FlatSpace};
 use crate::motion::{Motion, RigidMotion};
 use crate::observation::Observation;
 use crate::residual::{Residual, residual};
-use crate::run::{Precision, Run, Trajectory, run_body, run_model, run_step};
+use crate::run::{Place, Precision, Run, Trajectory, run_flat};
 use crate::scene::Scene;
 use crate::timed;
 use crate::timed::{Lap, Laps};
@@ -35,24 +34,13 @@ pub trait AnyScene: Send + Sync {
     /// By how much the exact motion fails its own equation of motion at the time `t`; see [`residual`].
     fn residual(&self, t: fx128, h_s: f64) -> Residual;
 
-    /// Runs one trajectory and observes it at every multiple of `stride` steps, and at the end.
-    fn run(&self, run: &Run, stride: u64) -> Trajectory;
-
-    /// The same with a step that exists for rigid bodies only; `None` where the scene is not a rigid body.
-    fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
-        let _ = (run, stride);
-        None
-    }
+    /// Runs one trajectory and observes it at every multiple of `stride` steps, and at the end; `None` for a step that the
+    /// scene cannot take, because it is no rigid body.
+    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory>;
 
     /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
     /// [`timed`].
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap>;
-
-    /// The same with a step that exists for rigid bodies only.
-    fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
-        let _ = (run, laps);
-        None
-    }
 
     /// Runs one trajectory from the start moved by `displacement` (configuration, then velocity) and observes it at the
     /// steps `looks`; `None` on a curved space.
@@ -100,25 +88,33 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn residual(&self, t: fx128, h_s: f64) -> Residual {
         residual(&self.scene, t, h_s)
     }
-    fn run(&self, run: &Run, stride: u64) -> Trajectory {
-        in_precision!(run.precision, T => run_model::<T, S>(&self.scene, run, stride))
+    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory> {
+        in_precision!(run.precision, T => run_flat::<T, <S as Model<T>>::Config>(&self.scene, run, stride))
     }
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
             Precision::F32 => timed::particles_explicit::<f32, S>(&self.scene, run, laps),
-            Precision::F64 => Some(timed::particles(&self.scene, run, laps)),
+            Precision::F64 => timed::particles(&self.scene, run, laps),
             Precision::DoubleDouble => None,
         }
     }
     fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
-        Some(in_precision!(run.precision, T => run_displaced::<T, S>(&self.scene, run, displacement, looks)))
+        in_precision!(run.precision, T => {
+            run_displaced::<T, <S as Model<T>>::Config>(&self.scene, run, displacement, looks)
+        })
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <S as Model<f64>>::Config::erase(&self.scene)
     }
 }
 
-impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMotion<fx128>> AnyScene for Rigid<B> {
+impl<B> AnyScene for Rigid<B>
+where
+    B: Scene
+        + RigidMotion<f32, Position: Place<f32>>
+        + RigidMotion<f64, Position: Place<f64> + ErasedPlace>
+        + RigidMotion<fx128, Position: Place<fx128>>,
+{
     fn id(&self) -> &'static str {
         self.id
     }
@@ -138,26 +134,19 @@ impl<B: Scene + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMoti
     fn residual(&self, t: fx128, h_s: f64) -> Residual {
         residual(&WorldOmega::<&B>::new(&self.scene), t, h_s)
     }
-    fn run(&self, run: &Run, stride: u64) -> Trajectory {
-        in_precision!(run.precision, T => run_body::<T, B>(&self.scene, run, stride))
+    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory> {
+        Some(in_precision!(run.precision, T => {
+            let start = RigidMotion::<T>::exact(&self.scene, T::lit(0.0));
+            <B as RigidBody<T>>::Position::run(&self.scene, start, run, stride)
+        }))
     }
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
-            _ if run.update != integrator::rigid_body::AttitudeUpdate::Exponential => None,
+            _ if run.scheme.update != AttitudeUpdate::Exponential => None,
             Precision::F32 => timed::body_explicit::<f32, B>(&self.scene, run, laps),
             Precision::F64 => timed::body(&self.scene, run, laps),
             Precision::DoubleDouble => None,
         }
-    }
-    fn time_step(&self, run: &Run<RigidStep>, laps: Laps) -> Option<Lap> {
-        match run.precision {
-            Precision::F32 => Some(timed::step::<f32, B>(&self.scene, run, laps)),
-            Precision::F64 => Some(timed::step::<f64, B>(&self.scene, run, laps)),
-            Precision::DoubleDouble => None,
-        }
-    }
-    fn run_step(&self, run: &Run<RigidStep>, stride: u64) -> Option<Trajectory> {
-        Some(in_precision!(run.precision, T => run_step::<T, B>(&self.scene, run, stride)))
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <B as RigidBody<f64>>::Position::erase(&self.scene)

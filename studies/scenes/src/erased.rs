@@ -50,18 +50,18 @@ macro_rules! flat {
 flat!(1 One, 2 Two, 3 Three, 16 Sixteen);
 
 /// Where a rigid body may be.
-pub trait Place: Vector<f64> {
+pub trait ErasedPlace: Vector<f64> {
     /// Forgets all of a body but the kind of its position.
     fn erase<'a>(motion: &'a (dyn RigidMotion<f64, Position = Self> + 'a)) -> AnyMotion<'a>;
 }
 
-impl Place for Fixed<f64> {
+impl ErasedPlace for Fixed<f64> {
     fn erase<'a>(motion: BodyMotion<'a, Self>) -> AnyMotion<'a> {
         AnyMotion::Pivoted(motion)
     }
 }
 
-impl Place for Vector3<f64> {
+impl ErasedPlace for Vector3<f64> {
     fn erase<'a>(motion: BodyMotion<'a, Self>) -> AnyMotion<'a> {
         AnyMotion::Flying(motion)
     }

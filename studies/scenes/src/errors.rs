@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use faer::fx128;
 use integrator::Real;
-use integrator::methods::MethodId;
 
 use crate::any::AnyScene;
 use crate::observation::{Observation, Quantity};
 use crate::run::{Outcome, Precision, Run, Trajectory};
+use crate::scheme::Scheme;
 
 /// Times at which a run is compared with the exact motion, evenly spaced; also the end.
 pub const CHECKPOINTS: u64 = 32;
@@ -100,9 +100,9 @@ pub fn stride(steps: u64) -> u64 {
     (steps / CHECKPOINTS).max(1)
 }
 
-/// Runs a scene up to its horizon, observed where it is to be compared.
-pub fn run(scene: &dyn AnyScene, method: MethodId, precision: Precision, steps: u64) -> Trajectory {
-    let run = Run::new(method, precision, scene.scene().info().horizon_s, steps);
+/// Runs a scene up to its horizon, observed where it is to be compared; `None` for a step that the scene cannot take.
+pub fn run(scene: &dyn AnyScene, scheme: impl Into<Scheme>, precision: Precision, steps: u64) -> Option<Trajectory> {
+    let run = Run::new(scheme, precision, scene.scene().info().horizon_s, steps);
     scene.run(&run, stride(steps))
 }
 

@@ -20,6 +20,7 @@ pub mod observation;
 pub mod parameters;
 pub mod residual;
 pub mod scene;
+pub mod scheme;
 pub mod special;
 pub mod stepping;
 pub mod theory;

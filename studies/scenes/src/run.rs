@@ -2,18 +2,20 @@
 
 use faer::fx128;
 use integrator::counted::Counted;
-use integrator::methods::{MethodId, RigidStep, RigidVisitor, Visitor};
-use integrator::pose::{Body, Exponential, Linear, World};
+use integrator::methods::{MethodId, RigidVisitor, Visitor};
+use integrator::pose::{Body, Exponential, Fixed, Linear, World};
 use integrator::rigid_body::{
     AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WithoutGyroscopicTerm, WorldMomentum,
     WorldOmega,
 };
-use integrator::{Method, Model, Single, State, Vector, drive};
+use integrator::{Method, Model, Single, Space, State, Vector, drive};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::motion::{Motion, RigidMotion};
+use crate::motion::Motion;
 use crate::observation::Observation;
+use crate::scheme::{Rule, Scheme};
 
 /// The arithmetic of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -90,16 +92,11 @@ pub fn method_from_id(id: &str) -> Result<MethodId, Error> {
     MethodId::ALL.iter().copied().find(|m| m.id() == id).ok_or_else(|| Error::unknown("method", id, known()))
 }
 
-/// What to run on a scene. `A` names the rule of a step: a [`MethodId`], or a
-/// [`RigidStep`] for a rigid body.
+/// What to run on a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run<A = MethodId> {
-    /// The rule of a step.
-    pub method: A,
-    /// What a rigid body stores; a flat scene, and a step that leaves no choice, pay no heed to it.
-    pub storage: Storage,
-    /// How a rigid body's attitude is advanced.
-    pub update: AttitudeUpdate,
+pub struct Run {
+    /// How to step.
+    pub scheme: Scheme,
     /// The arithmetic.
     pub precision: Precision,
     /// End of the run, s.
@@ -108,17 +105,10 @@ pub struct Run<A = MethodId> {
     pub steps: u64,
 }
 
-impl<A> Run<A> {
-    /// A run of which a rigid body stores its angular velocity in the world frame and moves by the exponential map.
-    pub fn new(method: A, precision: Precision, end_s: f64, steps: u64) -> Self {
-        let (storage, update) = (Storage::default(), AttitudeUpdate::default());
-        Run { method, storage, update, precision, end_s, steps }
-    }
-
-    /// The same with another stored quantity and another attitude update.
-    #[must_use]
-    pub fn storing(self, storage: Storage, update: AttitudeUpdate) -> Self {
-        Run { storage, update, ..self }
+impl Run {
+    /// A run by a method, by a step for rigid bodies, or by a whole scheme.
+    pub fn new(scheme: impl Into<Scheme>, precision: Precision, end_s: f64, steps: u64) -> Self {
+        Run { scheme: scheme.into(), precision, end_s, steps }
     }
 
     /// The step, s.
@@ -159,63 +149,88 @@ impl Trajectory {
     }
 }
 
-/// Runs a model of a flat space with a method chosen at run time.
-pub fn run_model<T: Single, M: Motion<T>>(model: &M, run: &Run, stride: u64) -> Trajectory {
-    let counted = Counted::new(model);
-    let seen = run.method.visit(Flat { model: &counted, motion: model, clock: Schedule::of(run, stride) });
-    seen.trajectory(run.method.is_implicit(), counted.evaluations())
-}
-
-struct Flat<'a, M> {
-    model: &'a Counted<&'a M>,
-    motion: &'a M,
-    clock: Schedule,
-}
-
-impl<'a, T: Single, M: Motion<T>> Visitor<T, Counted<&'a M>> for Flat<'a, M> {
-    type Output = Samples;
-
-    fn visit<A: Method<T, Counted<&'a M>>>(self, method: &A) -> Samples {
-        self.clock.drive(method, self.model, self.motion.exact(T::lit(0.0)), |s| self.motion.observe(s))
-    }
-}
-
-/// Runs a rigid body with a method, a stored quantity and an attitude update chosen at run time.
-///
-/// What every study runs, the world omega with the exponential map, is compiled for each body. The other combinations
-/// take their body behind a pointer, one virtual call an evaluation: they are compared and not timed, and compiled for each
-/// body they made the build more than twice as long.
-pub fn run_body<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, stride: u64) -> Trajectory {
-    let start = body.exact(T::lit(0.0));
-    if (run.storage, run.update) != (Storage::WorldOmega, AttitudeUpdate::Exponential) {
-        return run_any(body as AnyBody<'_, T, B::Position>, start, run, stride);
-    }
-    let counted = Counted::new(body);
-    let model = WorldOmega::<_, Exponential<World>>::new(&counted);
-    let seen = run.method.visit(Turning { model: &model, start, clock: Schedule::of(run, stride) });
-    seen.trajectory(run.method.is_implicit(), counted.evaluations())
-}
+/// The motion on a flat space of which only the space is known.
+pub type AnyFlat<'a, T, Q> = &'a (dyn Motion<T, Config = Q> + 'a);
 
 /// A body of which only the kind of its position is known.
-pub type AnyBody<'a, T, P> = &'a dyn RigidBody<T, Position = P>;
+pub type AnyBody<'a, T, P> = &'a (dyn RigidBody<T, Position = P> + 'a);
 
-/// Runs a body of which only the kind of its position is known.
-pub fn run_any<T: Single, P: Vector<T>>(
+/// Runs a motion on a flat space; `None` for a step that exists for rigid bodies only.
+///
+/// The motion is behind a pointer, one virtual call per evaluation: compiled for each scene, runs that nobody times were
+/// three quarters of the build. Timed runs are compiled for each scene, see [`timed`](crate::timed).
+pub(crate) fn run_flat<T: Single, Q: Space<Scalar = T>>(
+    motion: AnyFlat<'_, T, Q>,
+    run: &Run,
+    stride: u64,
+) -> Option<Trajectory> {
+    let Rule::General(method) = run.scheme.rule else { return None };
+    let counted = Counted::new(motion);
+    let samples = method.visit(Flat { model: &counted, motion, schedule: Schedule::of(run, stride) });
+    Some(samples.trajectory(method.is_implicit(), counted.evaluations()))
+}
+
+struct Flat<'a, T: Single, Q: Space<Scalar = T>> {
+    model: &'a Counted<AnyFlat<'a, T, Q>>,
+    motion: AnyFlat<'a, T, Q>,
+    schedule: Schedule,
+}
+
+impl<'a, T: Single, Q: Space<Scalar = T>> Visitor<T, Counted<AnyFlat<'a, T, Q>>> for Flat<'a, T, Q> {
+    type Output = Samples;
+
+    fn visit<A: Method<T, Counted<AnyFlat<'a, T, Q>>>>(self, method: &A) -> Samples {
+        self.schedule.drive(method, self.model, self.motion.exact(T::lit(0.0)), |s| self.motion.observe(s))
+    }
+}
+
+/// Where a rigid body may be, in the arithmetic `T`: [`Fixed`] or a [`Vector3`].
+pub trait Place<T: Single>: Vector<T> {
+    /// Runs a body of which only the kind of its position is known.
+    fn run(body: AnyBody<'_, T, Self>, start: Kinematics<T, Self>, run: &Run, stride: u64) -> Trajectory;
+}
+
+// Not generic, so that it is compiled once and not in every crate that runs a body.
+macro_rules! place {
+    ($($t:ty),*) => {$(
+        impl Place<$t> for Fixed<$t> {
+            fn run(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, stride: u64) -> Trajectory {
+                run_body(body, start, run, stride)
+            }
+        }
+        impl Place<$t> for Vector3<$t> {
+            fn run(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, stride: u64) -> Trajectory {
+                run_body(body, start, run, stride)
+            }
+        }
+    )*};
+}
+place!(f32, f64, fx128);
+
+fn run_body<T: Single, P: Vector<T>>(
     body: AnyBody<'_, T, P>,
     start: Kinematics<T, P>,
     run: &Run,
     stride: u64,
 ) -> Trajectory {
     let counted = Counted::new(body);
-    let clock = Schedule::of(run, stride);
+    let schedule = Schedule::of(run, stride);
+    let Scheme { rule, storage, update } = run.scheme;
+    let method = match rule {
+        Rule::General(method) => method,
+        Rule::Rigid(step) => {
+            let samples = step.visit::<T, _, _>(update, &counted, Turn { start, schedule });
+            return samples.trajectory(false, counted.evaluations());
+        }
+    };
     macro_rules! with {
         ($model:ident, $update:ident<$frame:ident>) => {{
             let model = $model::<_, $update<$frame>>::new(&counted);
-            run.method.visit(Turning { model: &model, start, clock })
+            method.visit(Turning { model: &model, start, schedule })
         }};
     }
     use AttitudeUpdate as U;
-    let seen = match (run.storage, run.update) {
+    let samples = match (storage, update) {
         (Storage::WorldOmega, U::Exponential) => with!(WorldOmega, Exponential<World>),
         (Storage::WorldOmega, U::Linear) => with!(WorldOmega, Linear<World>),
         (Storage::BodyOmega, U::Exponential) => with!(BodyOmega, Exponential<Body>),
@@ -225,53 +240,35 @@ pub fn run_any<T: Single, P: Vector<T>>(
         (Storage::WithoutGyroscopicTerm, U::Exponential) => with!(WithoutGyroscopicTerm, Exponential<World>),
         (Storage::WithoutGyroscopicTerm, U::Linear) => with!(WithoutGyroscopicTerm, Linear<World>),
     };
-    seen.trajectory(run.method.is_implicit(), counted.evaluations())
-}
-
-/// Runs a rigid body with a step that exists for rigid bodies only.
-pub fn run_step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidStep>, stride: u64) -> Trajectory {
-    step_any(body as AnyBody<'_, T, B::Position>, body.exact(T::lit(0.0)), run, stride)
-}
-
-/// The same with a step that exists for rigid bodies only.
-pub fn step_any<T: Single, P: Vector<T>>(
-    body: AnyBody<'_, T, P>,
-    start: Kinematics<T, P>,
-    run: &Run<RigidStep>,
-    stride: u64,
-) -> Trajectory {
-    let counted = Counted::new(body);
-    let turn = Turn { start, clock: Schedule::of(run, stride) };
-    let seen = run.method.visit::<T, _, _>(run.update, &counted, turn);
-    seen.trajectory(false, counted.evaluations())
+    samples.trajectory(method.is_implicit(), counted.evaluations())
 }
 
 /// A rigid body in what its model stores, with a general method.
 struct Turning<'a, T: Single, M: RigidModel<T>> {
     model: &'a M,
     start: Kinematics<T, <M::Body as RigidBody<T>>::Position>,
-    clock: Schedule,
+    schedule: Schedule,
 }
 
 impl<T: Single, M: RigidModel<T>> Visitor<T, M> for Turning<'_, T, M> {
     type Output = Samples;
 
     fn visit<A: Method<T, M>>(self, method: &A) -> Samples {
-        self.clock.drive(method, self.model, self.model.state(&self.start), |s| Observation::of_body(self.model, s))
+        self.schedule.drive(method, self.model, self.model.state(&self.start), |s| Observation::of_body(self.model, s))
     }
 }
 
 /// A rigid body whose model the step chooses.
 struct Turn<T: Single, P> {
     start: Kinematics<T, P>,
-    clock: Schedule,
+    schedule: Schedule,
 }
 
 impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<T, B::Position> {
     type Output = Samples;
 
     fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Samples {
-        self.clock.drive(method, model, model.state(&self.start), |s| Observation::of_body(model, s))
+        self.schedule.drive(method, model, model.state(&self.start), |s| Observation::of_body(model, s))
     }
 }
 
@@ -296,7 +293,7 @@ pub struct Samples {
 
 impl Schedule {
     /// The schedule of a run.
-    pub fn of<A>(run: &Run<A>, stride: u64) -> Self {
+    pub fn of(run: &Run, stride: u64) -> Self {
         Schedule { end_s: run.end_s, steps: run.steps, stride }
     }
 

@@ -14,6 +14,7 @@ use integrator::{Method, Model, Single, State, Vector, drive};
 
 use crate::motion::{Motion, RigidMotion};
 use crate::run::Run;
+use crate::scheme::Rule;
 
 /// How often a run is repeated from its start within one timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,27 +30,33 @@ pub struct Lap {
 }
 
 /// Times a run of a scene that is its own model, with every method.
-pub(crate) fn particles<S: Motion<f64>>(scene: &S, run: &Run, laps: Laps) -> Lap {
-    run.method.visit(Watch { model: scene, start: scene.exact(0.0), pace: Pace::of(run, laps) })
+pub(crate) fn particles<S: Motion<f64>>(scene: &S, run: &Run, laps: Laps) -> Option<Lap> {
+    let Rule::General(method) = run.scheme.rule else { return None };
+    Some(method.visit(Watch { model: scene, start: scene.exact(0.0), pace: Pace::of(run, laps) }))
 }
 
 /// The same with the explicit methods, in any arithmetic; `None` for an implicit one.
 pub(crate) fn particles_explicit<T: Single, S: Motion<T>>(scene: &S, run: &Run, laps: Laps) -> Option<Lap> {
-    explicit(run.method, Watch { model: scene, start: scene.exact(T::lit(0.0)), pace: Pace::of(run, laps) })
+    let Rule::General(method) = run.scheme.rule else { return None };
+    explicit(method, Watch { model: scene, start: scene.exact(T::lit(0.0)), pace: Pace::of(run, laps) })
 }
 
 /// Times a run of a rigid body that stores an angular velocity; `None` for another storage, and for an implicit method that
 /// stores that of the world.
 pub(crate) fn body<B: RigidMotion<f64>>(body: &B, run: &Run, laps: Laps) -> Option<Lap> {
+    let method = match run.scheme.rule {
+        Rule::General(method) => method,
+        Rule::Rigid(step) => return Some(of_step::<f64, B>(body, step, run, laps)),
+    };
     let (start, pace) = (body.exact(0.0), Pace::of(run, laps));
-    match run.storage {
+    match run.scheme.storage {
         Storage::WorldOmega => {
             let model = WorldOmega::<&B>::new(body);
-            explicit(run.method, Watch { model: &model, start: model.state(&start), pace })
+            explicit(method, Watch { model: &model, start: model.state(&start), pace })
         }
         Storage::BodyOmega => {
             let model = BodyOmega::<&B>::new(body);
-            Some(run.method.visit(Watch { model: &model, start: model.state(&start), pace }))
+            Some(method.visit(Watch { model: &model, start: model.state(&start), pace }))
         }
         _ => None,
     }
@@ -57,14 +64,13 @@ pub(crate) fn body<B: RigidMotion<f64>>(body: &B, run: &Run, laps: Laps) -> Opti
 
 /// The same with the explicit methods and the angular velocity of the body, in any arithmetic; `None` for anything else.
 pub(crate) fn body_explicit<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, laps: Laps) -> Option<Lap> {
-    if run.storage != Storage::BodyOmega {
-        return None;
-    }
+    let method = match run.scheme.rule {
+        Rule::Rigid(step) => return Some(of_step::<T, B>(body, step, run, laps)),
+        Rule::General(method) if run.scheme.storage == Storage::BodyOmega => method,
+        Rule::General(_) => return None,
+    };
     let model = BodyOmega::<&B>::new(body);
-    explicit(
-        run.method,
-        Watch { model: &model, start: model.state(&body.exact(T::lit(0.0))), pace: Pace::of(run, laps) },
-    )
+    explicit(method, Watch { model: &model, start: model.state(&body.exact(T::lit(0.0))), pace: Pace::of(run, laps) })
 }
 
 /// As [`MethodId::visit`], and compiles no implicit method: they are the larger part of a build, and in f32 and with the angular
@@ -80,9 +86,9 @@ fn explicit<T: Single, M: Model<T>>(method: MethodId, watch: Watch<'_, T, M>) ->
 }
 
 /// Times a run with a step that exists for rigid bodies only.
-pub(crate) fn step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidStep>, laps: Laps) -> Lap {
+fn of_step<T: Single, B: RigidMotion<T>>(body: &B, step: RigidStep, run: &Run, laps: Laps) -> Lap {
     let turn = Turn { start: body.exact(T::lit(0.0)), pace: Pace::of(run, laps) };
-    run.method.visit::<T, _, _>(AttitudeUpdate::Exponential, body, turn)
+    step.visit::<T, _, _>(AttitudeUpdate::Exponential, body, turn)
 }
 
 #[derive(Clone, Copy)]
@@ -93,7 +99,7 @@ struct Pace {
 }
 
 impl Pace {
-    fn of<A>(run: &Run<A>, laps: Laps) -> Self {
+    fn of(run: &Run, laps: Laps) -> Self {
         Pace { end_s: run.end_s, steps: run.steps, laps }
     }
 

@@ -10,9 +10,10 @@ use scenes::errors;
 use scenes::errors::Truth;
 use scenes::observation::{Observation, Value};
 use scenes::run::{Outcome, Precision, Trajectory};
+use scenes::scheme::Rule;
 use scenes::stepping::{Stepping, spectral_radius};
 
-use crate::question::{Command, Question, Rule};
+use crate::question::{Command, Question};
 
 /// The numbers before the rows of a run: outcome (0 finished, 1 diverged, 2 not converged), the step that failed (0 for
 /// none), evaluations, numbers in a row.
@@ -74,12 +75,9 @@ impl Desk {
 }
 
 fn trajectory(scene: &dyn AnyScene, question: &Question) -> Result<Trajectory, Error> {
-    match question.rule {
-        Rule::Method(method) => Ok(scene.run(&question.run(method), question.stride)),
-        Rule::Rigid(step) => scene
-            .run_step(&question.run(step), question.stride)
-            .ok_or_else(|| Error::plan("step", "exists for rigid bodies only; ask with 'method'")),
-    }
+    scene
+        .run(&question.run(), question.stride)
+        .ok_or_else(|| Error::plan("step", "exists for rigid bodies only; ask with 'method'"))
 }
 
 /// Head, then a row of step, time and what [`observed`] gives.
@@ -156,7 +154,7 @@ impl Loaded {
 
 /// Head, then step length and spectral radius.
 fn amplification(scene: &dyn AnyScene, question: &Question) -> Result<Vec<f64>, Error> {
-    let Rule::Method(method) = question.rule else { return Err(Error::plan("step", "ask with a 'method'")) };
+    let Rule::General(method) = question.rule else { return Err(Error::plan("step", "ask with a 'method'")) };
     let stepping = Stepping { scene, method, precision: question.precision };
     let mut numbers = vec![0.0, 0.0, 0.0, 2.0];
     for k in 1..=question.steps {

@@ -4,6 +4,7 @@ use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
 use scenes::error::Error;
 use scenes::run::{Precision, Run, method_from_id};
+use scenes::scheme::{Rule, Scheme};
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,15 +20,6 @@ pub enum Command {
     Errors,
     /// The spectral radius of one step, at `steps` steps up to the length `end_s`.
     Amplification,
-}
-
-/// The rule of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
-    /// A general method.
-    Method(MethodId),
-    /// A step for rigid bodies.
-    Rigid(RigidStep),
 }
 
 /// A question, read.
@@ -70,7 +62,7 @@ impl Question {
             command: command(lines.next().unwrap_or_default())?,
             scene: String::new(),
             set: Vec::new(),
-            rule: Rule::Method(MethodId::SemiImplicitEuler),
+            rule: Rule::General(MethodId::SemiImplicitEuler),
             storage: Storage::default(),
             update: AttitudeUpdate::default(),
             precision: Precision::F64,
@@ -97,7 +89,7 @@ impl Question {
                 let (name, value) = value.split_once('=').ok_or_else(|| Error::plan("set", "must be NAME=VALUE"))?;
                 self.set.push((name.to_owned(), value.to_owned()));
             }
-            "method" => self.rule = Rule::Method(method_from_id(value)?),
+            "method" => self.rule = Rule::General(method_from_id(value)?),
             "step" => self.rule = Rule::Rigid(named("step", RigidStep::ALL, RigidStep::id, value)?),
             "storage" => self.storage = named("storage", &Storage::ALL, Storage::id, value)?,
             "update" => self.update = named("update", &AttitudeUpdate::ALL, AttitudeUpdate::id, value)?,
@@ -113,8 +105,12 @@ impl Question {
     }
 
     /// The run that is asked for.
-    pub fn run<A>(&self, rule: A) -> Run<A> {
-        Run::new(rule, self.precision, self.end_s, self.steps).storing(self.storage, self.update)
+    pub fn run(&self) -> Run {
+        let scheme = match self.rule {
+            Rule::General(method) => Scheme::general(method, self.storage, self.update),
+            Rule::Rigid(step) => Scheme::rigid(step, self.update),
+        };
+        Run::new(scheme, self.precision, self.end_s, self.steps)
     }
 }
 

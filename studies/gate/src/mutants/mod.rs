@@ -16,9 +16,9 @@ use super::stepper::{Ask, Stepper};
 use measure::error::Error;
 use measure::rotation::{Rule, Scheme};
 use scenes::any::AnyScene;
-use scenes::erased::{AnyMotion, BodyMotion, FlatMotion, Place};
+use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
 use scenes::observation::Observation;
-use scenes::run::{Precision, Run, Samples, Schedule, Trajectory, run_any, step_any};
+use scenes::run::{Place, Precision, Run, Samples, Schedule, Trajectory};
 
 use measure::stability::bisect::Found;
 use wrong::{
@@ -221,7 +221,7 @@ impl Wrong {
         })
     }
 
-    fn turning<P: Place>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Option<Trajectory> {
+    fn turning<P: Place<f64>>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Option<Trajectory> {
         let Stepper::Turning(scheme) = self.stepper else { return None };
         let clock = clock(ask)?;
         let in_world = scheme.storage == Storage::WorldOmega;
@@ -290,20 +290,15 @@ fn driven<M: Model<f64>, A: Method<f64, M>>(
 }
 
 /// A built-in scheme on a body with wrong loads.
-fn with_loads<P: Place>(scheme: Scheme, body: &Altered<'_, P>, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Trajectory {
+fn with_loads<P: Place<f64>>(
+    scheme: Scheme,
+    body: &Altered<'_, P>,
+    motion: BodyMotion<'_, P>,
+    ask: &Ask<'_>,
+) -> Trajectory {
     let body: &dyn RigidBody<f64, Position = P> = body;
     let start = motion.exact(0.0);
-    let (storage, update) = (scheme.storage, scheme.update);
-    match scheme.rule {
-        Rule::General(method) => {
-            let run = Run::new(method, ask.precision, ask.end_s, ask.steps).storing(storage, update);
-            run_any(body, start, &run, ask.stride)
-        }
-        Rule::Rigid(step) => {
-            let run = Run::new(step, ask.precision, ask.end_s, ask.steps).storing(storage, update);
-            step_any(body, start, &run, ask.stride)
-        }
-    }
+    P::run(body, start, &Run::new(scheme, ask.precision, ask.end_s, ask.steps), ask.stride)
 }
 
 /// n - 1 steps of the length of n, taken for n.

@@ -10,7 +10,7 @@ use nalgebra::{Vector1, Vector2, Vector3};
 
 use crate::operations;
 use crate::operations::{Counting, Lift};
-use scenes::any::{AnyScene, Particles, Rigid};
+use scenes::any::AnyScene;
 use scenes::motion::{Motion, RigidMotion};
 use scenes::observation::{Observation, Quantity};
 use scenes::{
@@ -198,27 +198,20 @@ fn rotations() -> Vec<Ladder> {
     let boxed = BoxTumbling::default();
     let acceleration = spun.torque / spun.inertia[spun.axis as usize];
     let rungs = vec![one_angle(&free, 0.0, false), no_gyroscopic_term!(free, false), full!(free)];
-    let of_free = ladder("torque-free-spin", Box::new(Rigid { id: "torque-free-spin", scene: free }), attitude, rungs);
+    let of_free = ladder("torque-free-spin", scenes::boxed("torque-free-spin", free), attitude, rungs);
     let round = rigid(SPHERE, false, BodyOmega::<_>::new(round_top), &top);
     let rungs = vec![one_angle(&top, 0.0, false), round, no_gyroscopic_term!(top, false), full!(top)];
-    let of_top = ladder("heavy-top", Box::new(Rigid { id: "heavy-top", scene: top }), attitude, rungs);
+    let of_top = ladder("heavy-top", scenes::boxed("heavy-top", top), attitude, rungs);
     let rungs = vec![one_angle(&spun, acceleration, true), no_gyroscopic_term!(spun, true), full!(spun)];
-    let of_spun =
-        ladder("principal-axis-torque", Box::new(Rigid { id: "principal-axis-torque", scene: spun }), attitude, rungs);
+    let of_spun = ladder("principal-axis-torque", scenes::boxed("principal-axis-torque", spun), attitude, rungs);
     let rungs = vec![one_angle(&sphere, 0.0, false), no_gyroscopic_term!(sphere, true), full!(sphere)];
-    let of_sphere = ladder("sphere-torque", Box::new(Rigid { id: "sphere-torque", scene: sphere }), attitude, rungs);
+    let of_sphere = ladder("sphere-torque", scenes::boxed("sphere-torque", sphere), attitude, rungs);
     let rungs = vec![no_gyroscopic_term!(boxed, false), full!(boxed)];
-    let of_box =
-        ladder("box-tumbling attitude", Box::new(Rigid { id: "box-tumbling", scene: boxed.clone() }), attitude, rungs);
+    let of_box = ladder("box-tumbling attitude", scenes::boxed("box-tumbling", boxed.clone()), attitude, rungs);
     let start = State { q: Vector3::from(boxed.x0), v: Vector3::from(boxed.v0) };
     let point = rung("translation only", true, Fall { gravity: boxed.gravity }, start, Observation::particles);
     let rungs = vec![point, full!(boxed)];
-    let of_point = ladder(
-        "box-tumbling position",
-        Box::new(Rigid { id: "box-tumbling", scene: boxed }),
-        Quantity::Position,
-        rungs,
-    );
+    let of_point = ladder("box-tumbling position", scenes::boxed("box-tumbling", boxed), Quantity::Position, rungs);
     vec![of_free, of_top, of_spun, of_sphere, of_box, of_point]
 }
 
@@ -228,23 +221,17 @@ fn translations() -> Vec<Ladder> {
     let start = Motion::<f64>::exact(&linear, 0.0);
     let fall = rung("no drag", false, Fall { gravity: linear.gravity }, start, Observation::particles);
     let full = rung(FULL, true, linear.clone(), start, Observation::particles);
-    let of_linear =
-        ladder("linear-drag", Box::new(Particles { id: "linear-drag", scene: linear }), position, vec![fall, full]);
+    let of_linear = ladder("linear-drag", scenes::boxed("linear-drag", linear), position, vec![fall, full]);
     let start = Motion::<f64>::exact(&quadratic, 0.0);
     let fall = rung("no drag", false, Fall { gravity: [quadratic.gravity] }, start, Observation::particles);
     let full = rung(FULL, true, quadratic.clone(), start, Observation::particles);
-    let of_quadratic = ladder(
-        "quadratic-drag",
-        Box::new(Particles { id: "quadratic-drag", scene: quadratic }),
-        position,
-        vec![fall, full],
-    );
+    let of_quadratic = ladder("quadratic-drag", scenes::boxed("quadratic-drag", quadratic), position, vec![fall, full]);
     let start: State<Vector2<f64>> = Motion::<f64>::exact(&planet, 0.0);
     // The gravity of the place where the planet starts.
     let gravity = start.q * (-planet.mu / start.q.norm().powi(3));
     let fall = rung("uniform gravity", false, Fall { gravity: gravity.into() }, start, Observation::particles);
     let full = rung(FULL, true, planet.clone(), start, Observation::particles);
-    let of_planet = ladder("kepler", Box::new(Particles { id: "kepler", scene: planet }), position, vec![fall, full]);
+    let of_planet = ladder("kepler", scenes::boxed("kepler", planet), position, vec![fall, full]);
     vec![of_linear, of_quadratic, of_planet]
 }
 
@@ -255,5 +242,5 @@ fn pendulum(name: &'static str, scene: Pendulum, consistent: bool) -> Ladder {
         rung("small angle", consistent, model, start, Observation::angle),
         rung(FULL, true, scene.clone(), start, Observation::angle),
     ];
-    ladder(name, Box::new(Particles { id: name, scene }), Quantity::Attitude, rungs)
+    ladder(name, scenes::boxed(name, scene), Quantity::Attitude, rungs)
 }

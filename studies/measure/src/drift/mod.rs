@@ -216,7 +216,7 @@ impl<'a> Track<'a> {
 
     fn rows(&self, method: MethodId, precision: Precision) -> Vec<Row> {
         let run = Run::new(method, precision, self.h_s * self.steps as f64, self.steps);
-        let trajectory = self.scene.run(&run, self.stride);
+        let Some(trajectory) = self.scene.run(&run, self.stride) else { return Vec::new() };
         let seen = trajectory.seen.iter().skip(1);
         let measured: Vec<(u64, Vec<(Drift, f64)>)> =
             seen.map(|(step, seen)| (*step, self.errors(*step, seen))).collect();

@@ -12,8 +12,7 @@ use nalgebra::Vector3;
 use super::lanes::{Coordinates, Eight, run_pack};
 use super::random::Generator;
 use crate::error::Error;
-use scenes::any::{AnyScene, Particles, Rigid};
-use scenes::erased::{FlatSpace, Place};
+use scenes::any::AnyScene;
 use scenes::motion::{Motion, RigidMotion};
 use scenes::observation::Observation;
 use scenes::scene::Scene;
@@ -39,7 +38,7 @@ pub trait Members: Send + Sync {
     /// How many there are.
     fn count(&self) -> usize;
     /// One of them by itself.
-    fn alone(&self, member: usize) -> &dyn AnyScene;
+    fn alone(&self, member: usize) -> Box<dyn AnyScene>;
     /// What is seen of some of them, at most eight, at the end of a run in lanes, `None` for one that left the finite numbers.
     /// The outer `None`: the method does not run in lanes.
     fn ends(&self, members: Range<usize>, method: MethodId, end_s: f64, steps: u64)
@@ -57,8 +56,8 @@ macro_rules! list {
             let (id, mut random) = (scene.id(), Generator::new(seed));
             $($(
                 if let Some(law) = any.downcast_ref::<$scene>() {
-                    let members = (0..count).map(|_| $kind { id, scene: law.drawn(&mut random) });
-                    return Ok(Box::new(Drawing::new(law, members.collect())));
+                    let members = (0..count).map(|_| $kind { scene: law.drawn(&mut random) });
+                    return Ok(Box::new(Drawing::new(id, law, members.collect())));
                 }
             )*)*
             let message = format!(
@@ -85,6 +84,16 @@ list! {
     Rigid(SphereTorque, SymmetricTop, TorqueFreeSpin, HeavyTop, BoxTumbling);
 }
 
+/// A member that is its own model.
+struct Particles<S> {
+    scene: S,
+}
+
+/// A member that is a rigid body.
+struct Rigid<B> {
+    scene: B,
+}
+
 /// Where a scene starts, in what its model stores.
 trait Start {
     type Config: Space;
@@ -107,15 +116,16 @@ impl<B: RigidMotion<f64>> Start for Rigid<B> {
 
 /// The law that all share, and the members with their starts.
 struct Drawing<S, M: Start> {
+    id: &'static str,
     law: S,
     members: Vec<M>,
     starts: Vec<State<M::Config>>,
 }
 
 impl<S: Clone, M: Start> Drawing<S, M> {
-    fn new(law: &S, members: Vec<M>) -> Self {
+    fn new(id: &'static str, law: &S, members: Vec<M>) -> Self {
         let starts = members.iter().map(M::start).collect();
-        Drawing { law: law.clone(), members, starts }
+        Drawing { id, law: law.clone(), members, starts }
     }
 }
 
@@ -127,8 +137,8 @@ macro_rules! members {
         fn count(&self) -> usize {
             self.members.len()
         }
-        fn alone(&self, member: usize) -> &dyn AnyScene {
-            &self.members[member]
+        fn alone(&self, member: usize) -> Box<dyn AnyScene> {
+            scenes::boxed(self.id, self.members[member].scene.clone())
         }
         fn ends(
             &self,
@@ -147,8 +157,8 @@ macro_rules! members {
 
 impl<S> Members for Drawing<S, Particles<S>>
 where
-    S: Drawn + Motion<f32> + Motion<f64> + Motion<faer::fx128> + Model<Eight>,
-    <S as Model<f64>>::Config: Coordinates + FlatSpace,
+    S: Drawn + Motion<f64> + Model<Eight>,
+    <S as Model<f64>>::Config: Coordinates,
     <S as Model<Eight>>::Config: Coordinates,
 {
     members!(S::RULE, |drawing| drawing.law.clone());
@@ -156,7 +166,7 @@ where
 
 impl<B> Members for Drawing<B, Rigid<B>>
 where
-    B: Drawn + RigidMotion<f32> + RigidMotion<f64, Position: Place> + RigidMotion<faer::fx128> + RigidBody<Eight>,
+    B: Drawn + RigidMotion<f64> + RigidBody<Eight>,
 {
     // The world omega with the exponential map, as in every study that does not say otherwise.
     members!(B::RULE, |drawing| WorldOmega::<&B>::new(&drawing.law));

@@ -7,9 +7,9 @@ use super::laws::nutation_factor;
 use super::long::Fate;
 use super::orders::{Seen, orders};
 use super::row::{Experiment, Row};
-use super::scheme::{Rule, Scheme};
 use crate::growth;
 use crate::study::{distinct, short};
+use scenes::scheme::{Rule, Scheme};
 use scenes::theory::Law;
 
 /// Scenes on which omega x I omega vanishes along the whole motion: there the model without the gyroscopic term is right.

@@ -4,10 +4,12 @@ use faer::fx128;
 use integrator::{Real, Single};
 use nalgebra::Vector3;
 
-use super::scheme::{Rule, Scheme};
+use integrator::pose::Fixed;
 use scenes::TorqueFreeSpin;
+use scenes::motion::RigidMotion;
 use scenes::observation::{Observation, Quantity};
-use scenes::run::{Precision, Run, Trajectory, run_body, run_step};
+use scenes::run::{Place, Precision, Run, Trajectory};
+use scenes::scheme::Scheme;
 
 /// A free body at an instant: body components.
 #[derive(Clone, Copy, Debug)]
@@ -59,13 +61,11 @@ impl Free {
 }
 
 /// Runs a free body in the given arithmetic.
-pub fn run<T: Single>(scheme: Scheme, body: &TorqueFreeSpin, end_s: f64, steps: u64, stride: u64) -> Trajectory {
+pub fn run<T: Single>(scheme: Scheme, body: &TorqueFreeSpin, end_s: f64, steps: u64, stride: u64) -> Trajectory
+where
+    Fixed<T>: Place<T>,
+{
     // The arithmetic is the type; the field is not read.
-    let precision = Precision::F64;
-    match scheme.rule {
-        Rule::General(method) => {
-            run_body::<T, _>(body, &scheme.stored(Run::new(method, precision, end_s, steps)), stride)
-        }
-        Rule::Rigid(step) => run_step::<T, _>(body, &scheme.stored(Run::new(step, precision, end_s, steps)), stride),
-    }
+    let run = Run::new(scheme, Precision::F64, end_s, steps);
+    Place::run(body, RigidMotion::<T>::exact(body, T::lit(0.0)), &run, stride)
 }

@@ -12,8 +12,8 @@ use nalgebra::Matrix2;
 
 use super::free::{Free, dot, run};
 use super::row::{Experiment, Row};
-use super::scheme::{Rule, Scheme};
 use scenes::TorqueFreeSpin;
+use scenes::scheme::{Rule, Scheme};
 
 /// How far a law goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

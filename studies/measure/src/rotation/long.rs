@@ -6,10 +6,10 @@ use integrator::Single;
 use super::free::{Free, dot, run};
 use super::laws::symmetric;
 use super::row::{Experiment, Row};
-use super::scheme::Scheme;
 use scenes::TorqueFreeSpin;
 use scenes::any::AnyScene;
-use scenes::run::{Outcome, Trajectory};
+use scenes::run::{Outcome, Precision, Run, Trajectory};
+use scenes::scheme::Scheme;
 
 /// Step of the long runs, s.
 pub const LONG_STEP_S: f64 = 0.01;
@@ -186,7 +186,10 @@ fn angle(a: &Free, b: &Free) -> f64 {
 /// The largest distance between the motions of two schemes on one scene: angle in rad.
 pub fn same_motion(scene: &dyn AnyScene, schemes: [Scheme; 2], steps: u64) -> Vec<Row> {
     let end_s = scene.scene().info().horizon_s;
-    let [Some(one), Some(other)] = schemes.map(|scheme| scheme.run(scene, end_s, steps, 1)) else { return Vec::new() };
+    let [Some(one), Some(other)] = schemes.map(|scheme| scene.run(&Run::new(scheme, Precision::F64, end_s, steps), 1))
+    else {
+        return Vec::new();
+    };
     let runs = [one, other];
     if runs.iter().any(|run| run.outcome != Outcome::Finished) {
         return Vec::new();

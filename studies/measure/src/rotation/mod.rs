@@ -7,7 +7,6 @@ pub mod long;
 pub mod orders;
 pub mod published;
 pub mod row;
-pub mod scheme;
 mod show;
 mod tables;
 
@@ -16,7 +15,7 @@ use integrator::rigid_body::{AttitudeUpdate, Storage};
 use reports::{Claim, Figure};
 
 pub use row::{Experiment, Row};
-pub use scheme::{Rule, Scheme};
+pub use scenes::scheme::{Rule, Scheme};
 
 use crate::error::Error;
 use crate::study::{Derived, Selection, Study};

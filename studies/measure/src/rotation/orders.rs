@@ -4,12 +4,12 @@ use faer::fx128;
 use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
-use super::scheme::Scheme;
 use crate::study::{Selection, distinct};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::observation::{Observation, Quantity};
-use scenes::run::Outcome;
+use scenes::run::{Outcome, Precision, Run};
+use scenes::scheme::Scheme;
 
 /// Halvings of the coarsest step of a sweep; the step of the table is the third finest. A quick report takes them all: an
 /// order is not seen in fewer, and they take a second.
@@ -36,7 +36,7 @@ fn sweep(scene: &dyn AnyScene, scheme: Scheme) -> Vec<Row> {
 }
 
 fn errors(scene: &dyn AnyScene, scheme: Scheme, steps: u64, end_s: f64, exact: &Observation) -> Vec<Row> {
-    let Some(run) = scheme.run(scene, end_s, steps, steps) else { return Vec::new() };
+    let Some(run) = scene.run(&Run::new(scheme, Precision::F64, end_s, steps), steps) else { return Vec::new() };
     let row = Row::new(Experiment::Error, scene.id(), scheme, end_s / steps as f64, &run);
     let error = |quantity| Some(run.end()?.distances(exact).iter().find(|(q, _)| *q == quantity)?.1);
     [Quantity::Attitude, Quantity::AngularVelocity]

@@ -8,9 +8,9 @@ use integrator::{Method, drive};
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::scheme::Scheme;
 use scenes::BoxTumbling;
 use scenes::motion::RigidMotion;
+use scenes::scheme::Scheme;
 
 const CSV: &str = include_str!("../../data/published.csv");
 

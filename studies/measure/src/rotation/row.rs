@@ -3,8 +3,8 @@
 use reports::{Claim, Verdict};
 use serde::{Deserialize, Serialize};
 
-use super::scheme::Scheme;
 use scenes::run::{Outcome, Trajectory};
+use scenes::scheme::Scheme;
 
 /// What was done to get a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -4,9 +4,9 @@ use reports::{Axis, AxisName, Figure, Layer, Series};
 
 use super::laws::{self, nutation_factor};
 use super::row::{Experiment, Row};
-use super::scheme::Scheme;
 use crate::names::scene_title;
 use crate::study::distinct;
+use scenes::scheme::Scheme;
 
 /// Schemes drawn in the charts, in the order of their colours.
 const DRAWN: [&str; 8] = [

@@ -7,9 +7,9 @@ use super::claims::{conserved, law};
 use super::long::Fate;
 use super::orders::{Seen, orders};
 use super::row::{Experiment, Row};
-use super::scheme::Scheme;
 use crate::error::Error;
 use crate::study::{Derived, short};
+use scenes::scheme::Scheme;
 
 /// The one table for an engine's issue thread, orders and errors by scene, and the printed numbers.
 pub(super) fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {

@@ -59,7 +59,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     let found = match linear {
         Some(limit) => limits::measure(stepping, limit),
         None => measure_nonlinear(stepping.scene, 0.0, |end_s, steps| {
-            Some(stepping.scene.run(&Run::new(stepping.method, stepping.precision, end_s, steps), 1))
+            stepping.scene.run(&Run::new(stepping.method, stepping.precision, end_s, steps), 1)
         }),
     };
     match theory {

@@ -5,10 +5,10 @@ use integrator::rigid_body::{AttitudeUpdate, Storage};
 use reports::Marker;
 
 use crate::rotation::orders::is_rigid;
-use crate::rotation::scheme::{Rule, Scheme};
 use crate::study::color_of;
 use scenes::any::AnyScene;
 use scenes::run::{Precision, Run, Trajectory};
+use scenes::scheme::{Rule, Scheme};
 use scenes::timed::{Lap, Laps};
 
 /// One way to move a scene.
@@ -117,15 +117,7 @@ impl Candidate {
 
     /// One observed run; `None` for a step that the scene, which is no rigid body, cannot take.
     pub fn run(self, scene: &dyn AnyScene, precision: Precision, span: Span, stride: u64) -> Option<Trajectory> {
-        let Scheme { rule, storage, update } = self.scheme;
-        match rule {
-            Rule::General(method) => {
-                Some(scene.run(&Run::new(method, precision, span.end_s, span.steps).storing(storage, update), stride))
-            }
-            Rule::Rigid(step) => {
-                scene.run_step(&Run::new(step, precision, span.end_s, span.steps).storing(storage, update), stride)
-            }
-        }
+        scene.run(&Run::new(self.scheme, precision, span.end_s, span.steps), stride)
     }
 
     /// Whether [`Self::time`] has code for it, or, in double-double, the observed run stands in.
@@ -140,12 +132,6 @@ impl Candidate {
 
     /// One timed run; `None` for what is not compiled to be timed.
     pub fn time(self, scene: &dyn AnyScene, precision: Precision, span: Span, laps: Laps) -> Option<Lap> {
-        let Scheme { rule, storage, update } = self.scheme;
-        match rule {
-            Rule::General(method) => {
-                scene.time(&Run::new(method, precision, span.end_s, span.steps).storing(storage, update), laps)
-            }
-            Rule::Rigid(step) => scene.time_step(&Run::new(step, precision, span.end_s, span.steps), laps),
-        }
+        scene.time(&Run::new(self.scheme, precision, span.end_s, span.steps), laps)
     }
 }

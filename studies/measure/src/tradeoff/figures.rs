@@ -9,9 +9,9 @@ use super::iso::sweeps;
 use super::ucurve::{INDEPENDENT, Minimum, SHOWN, minima};
 use super::{Charge, Part, Row};
 use crate::names::scene_title;
-use crate::rotation::Rule;
 use crate::study::{color_of, command};
 use scenes::run::Precision;
+use scenes::scheme::Rule;
 
 /// The charts on the page; the others are linked.
 pub(super) const ON_PAGE: [&str; 5] = [

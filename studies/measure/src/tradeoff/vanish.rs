@@ -9,7 +9,7 @@ use integrator::methods::MethodId;
 use super::{Part, Row};
 use crate::study::Selection;
 use scenes::ConstantForce;
-use scenes::any::{AnyScene, Particles};
+
 use scenes::observation::Quantity;
 use scenes::run::{Precision, Run};
 
@@ -68,8 +68,8 @@ fn bracket(precision: Precision, height_m: f64, near_s: f64) -> (f64, f64) {
 /// Whether a body let go at this height has moved after one step of semi-implicit Euler.
 pub fn moves(precision: Precision, height_m: f64, h_s: f64) -> bool {
     let scene = ConstantForce { mass: 1.0, force: [0.0, 0.0, -GRAVITY], x0: [0.0, 0.0, height_m], v0: [0.0; 3] };
-    let scene = Particles { id: "constant-force", scene };
+    let scene = scenes::boxed("constant-force", scene);
     let run = scene.run(&Run::new(MethodId::SemiImplicitEuler, precision, h_s, 1), 1);
-    let height = |i: usize| run.seen.get(i).map(|(_, seen)| seen.vector(Quantity::Position)[2]);
+    let height = |i: usize| run.as_ref()?.seen.get(i).map(|(_, seen)| seen.vector(Quantity::Position)[2]);
     height(0) != height(1)
 }

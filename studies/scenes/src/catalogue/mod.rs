@@ -42,6 +42,9 @@ pub use symmetric_top::SymmetricTop;
 pub use torque_free_spin::TorqueFreeSpin;
 
 use crate::any::{AnyScene, Particles, Rigid};
+use crate::scene::Scene;
+use std::any::Any;
+
 use crate::error::Error;
 
 macro_rules! list {
@@ -116,4 +119,15 @@ pub fn by_id(id: &str) -> Result<Box<dyn AnyScene>, Error> {
         .into_iter()
         .find(|scene| scene.id() == id)
         .ok_or_else(|| Error::unknown("scene", id, IDS.iter().map(|&known| known.to_owned())))
+}
+
+/// A scene of the catalogue with this law and start in the place of its own.
+///
+/// # Panics
+/// Where the catalogue has a scene of another kind, or none, under that name.
+pub fn boxed<S: Scene>(id: &str, scene: S) -> Box<dyn AnyScene> {
+    let mut any = all().into_iter().find(|any| any.id() == id).expect("the name is one of the catalogue's");
+    let own: &mut dyn Any = any.scene_mut();
+    *own.downcast_mut::<S>().expect("the catalogue has a scene of this kind under the name") = scene;
+    any
 }

@@ -1,10 +1,7 @@
-//! What is compared: a rule of a step, what the body stores, how its attitude is advanced.
+//! How to step: a rule of a step, what a rigid body stores, how its attitude is advanced.
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
-
-use scenes::any::AnyScene;
-use scenes::run::{Precision, Run, Trajectory};
 
 /// The rule of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +12,7 @@ pub enum Rule {
     Rigid(RigidStep),
 }
 
-/// One way to turn a rigid body.
+/// One way to step a scene. A flat scene has nothing to choose but the rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
     /// The rule of a step.
@@ -24,6 +21,20 @@ pub struct Scheme {
     pub storage: Storage,
     /// How the attitude is advanced.
     pub update: AttitudeUpdate,
+}
+
+/// The method with the formulation and the attitude update that a rigid body has by default.
+impl From<MethodId> for Scheme {
+    fn from(method: MethodId) -> Self {
+        Scheme::general(method, Storage::default(), AttitudeUpdate::default())
+    }
+}
+
+/// The step with the attitude update that a rigid body has by default.
+impl From<RigidStep> for Scheme {
+    fn from(step: RigidStep) -> Self {
+        Scheme::rigid(step, AttitudeUpdate::default())
+    }
 }
 
 impl Scheme {
@@ -104,19 +115,5 @@ impl Scheme {
     /// Whether the gyroscopic term is left out.
     pub fn lacks_gyroscopic_term(self) -> bool {
         self.storage == Storage::WithoutGyroscopicTerm
-    }
-
-    /// A run that stores and moves as the scheme does.
-    pub(super) fn stored<A>(self, run: Run<A>) -> Run<A> {
-        run.storing(self.storage, self.update)
-    }
-
-    /// Runs a scene in f64; `None` for a step that the scene, which is no rigid body, cannot take.
-    pub fn run(self, scene: &dyn AnyScene, end_s: f64, steps: u64, stride: u64) -> Option<Trajectory> {
-        let precision = Precision::F64;
-        match self.rule {
-            Rule::General(method) => Some(scene.run(&self.stored(Run::new(method, precision, end_s, steps)), stride)),
-            Rule::Rigid(step) => scene.run_step(&self.stored(Run::new(step, precision, end_s, steps)), stride),
-        }
     }
 }
