@@ -157,14 +157,15 @@ pub fn widen<T: Single>(q: Rotation<T>) -> Rotation<fx128> {
     Rotation { w: q.w.widen(), v: q.v.map(Single::widen) }
 }
 
-/// sqrt(sum x^2), scaled so that neither 1e200 overflows nor 1e-200 vanishes.
+/// sqrt(sum x^2), scaled so that neither 1e200 overflows nor 1e-200 vanishes; NaN where a component is.
 pub fn norm(components: impl Iterator<Item = fx128> + Clone) -> fx128 {
-    let largest = components.clone().map(|x| x.0.abs()).fold(0.0, f64::max);
+    let larger = |most: f64, x: f64| if x > most || x.is_nan() { x } else { most };
+    let largest = components.clone().map(|x| x.0.abs()).fold(0.0, larger);
     if largest == 0.0 || !largest.is_finite() {
         return fx128::from_f64(largest);
     }
-    // A power of two: scaling by it does not round.
-    let scale = fx128::lit(2.0_f64.powi(largest.log2().floor() as i32));
+    // A power of two: scaling by it does not round. Its inverse is finite, also for denormal numbers.
+    let scale = fx128::lit(2.0_f64.powi(largest.log2().floor().max(-1000.0) as i32));
     let sum = components.fold(fx128::ZERO, |sum, x| {
         let y = x / scale;
         sum + y * y
@@ -172,7 +173,8 @@ pub fn norm(components: impl Iterator<Item = fx128> + Clone) -> fx128 {
     sum.sqrt() * scale
 }
 
-fn distance(a: &Value, b: &Value) -> f64 {
+/// |a - b| of two vectors, the angle between two attitudes; NaN for a vector and an attitude.
+pub fn distance(a: &Value, b: &Value) -> f64 {
     match (a, b) {
         (Value::Vector(a), Value::Vector(b)) => {
             norm(a.iter().zip(b).map(|(&x, &y)| x - y).collect::<Vec<_>>().into_iter()).to_f64()
