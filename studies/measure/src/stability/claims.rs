@@ -3,8 +3,8 @@
 use reports::{Claim, Verdict};
 
 use super::bisect::WIDTH;
-use super::limits::UNSEEN;
 use super::failure::Failure;
+use super::limits::UNSEEN;
 use super::maps::{self, Grid, boundary_distance};
 use super::models::Scheme;
 use super::spin::{FACTOR_TOLERANCE, STEPS, SpinScheme};

@@ -64,7 +64,7 @@ impl Trial {
         if stepping.method.is_implicit() {
             return Trial { patience: 1 << IMPLICIT_LENGTHS[0], width: WIDTH, sees: true };
         }
-        let StabilityLimit::Below(limit) = theory else { 
+        let StabilityLimit::Below(limit) = theory else {
             return Trial { patience: judge::PATIENCE, width: WIDTH, sees: true };
         };
         let growth = |width: f64| {

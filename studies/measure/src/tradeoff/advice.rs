@@ -24,7 +24,7 @@ pub struct Question {
     pub budget_us: Option<f64>,
     /// Length of the run, s; the scene's horizon if it is `None`.
     pub duration_s: Option<f64>,
-    /// Frames a second: steps are whole parts of a frame.
+    /// Frames per second: steps are whole parts of a frame.
     pub rate_hz: Option<f64>,
 }
 
@@ -73,9 +73,9 @@ impl Question {
     pub fn check(&self, has_scene: bool) -> Result<(), Error> {
         let numbers = [
             ("--error", self.error, "an error in m or rad, such as 1e-3"),
-            ("--budget-us", self.budget_us, "microseconds for a simulated second, such as 5"),
+            ("--budget-us", self.budget_us, "microseconds per simulated second, such as 5"),
             ("--for", self.duration_s, "seconds, such as 60"),
-            ("--rate", self.rate_hz, "frames a second, such as 60"),
+            ("--rate", self.rate_hz, "frames per second, such as 60"),
         ];
         for (flag, value, example) in numbers {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
@@ -83,15 +83,15 @@ impl Question {
             }
         }
         if !has_scene {
-            return Err(Error::plan(
-                "--scene",
-                "advice needs a scene; give one, such as --scene pendulum".to_owned(),
-            ));
+            return Err(Error::plan("--scene", "advice needs a scene; give one, such as --scene pendulum".to_owned()));
         }
         if self.error.is_none() && self.budget_us.is_none() {
             let message = "needs an error or a budget; give --error 1e-3 or --budget-us 5".to_owned();
             let flags = [(self.rate_hz.is_some(), "--rate"), (self.duration_s.is_some(), "--for"), (true, "--of")];
-            return Err(Error::plan(flags.iter().find(|(is_given, _)| *is_given).map_or("--error", |(_, flag)| flag), message));
+            return Err(Error::plan(
+                flags.iter().find(|(is_given, _)| *is_given).map_or("--error", |(_, flag)| flag),
+                message,
+            ));
         }
         Ok(())
     }
@@ -173,7 +173,8 @@ fn check_truth(truth: &Truth<'_>, scene: &str, of: Of) -> Result<(), Error> {
         return Err(Error::plan("--of", message));
     }
     if !is_finite {
-        let message = "the exact motion leaves the range of the numbers; shorten --for or set other parameters with --set";
+        let message =
+            "the exact motion leaves the range of the numbers; shorten --for or set other parameters with --set";
         return Err(Error::plan(format!("--scene {scene}"), message));
     }
     Ok(())

@@ -28,7 +28,7 @@ const PANEL: f64 = 4.0;
 const MOST_PANELS: u64 = 1 << 16;
 /// Halvings of a panel.
 const HALVINGS: u32 = 8;
-/// Errors of rounding, in parts of the largest coordinate: below, a shorter panel is no better.
+/// Errors of rounding, in parts of the largest coordinate, of the sums of sixteen terms: below, a shorter panel is no better.
 const ROUNDED: f64 = 16.0 * f64::EPSILON;
 
 /// The exact motion between its samples.
@@ -45,7 +45,10 @@ struct Panel {
     to: u64,
     /// Coefficients of the Chebyshev polynomials, by coordinate; `None` where no polynomial is near enough.
     coefficients: Option<Vec<[f64; NODES]>>,
+    /// `SAFETY` times the largest error measured.
     error: f64,
+    /// The same of a panel in which only rounding is left.
+    rounding: f64,
 }
 
 /// What is interpolated.
@@ -76,7 +79,7 @@ impl Path {
         let (first, length) = ((panels as u64).next_power_of_two(), 1 << HALVINGS);
         let sampled = Sampled { scene, of, end_s, parts: first * length, target };
         let tops: Vec<u64> = (0..first).map(|i| i * length).collect();
-        let divided = |&from: &u64| sampled.divide(from, from + length, f64::INFINITY);
+        let divided = |&from: &u64| sampled.divide(from, from + length);
         let panels: Vec<Panel> =
             in_parallel(&tops, |_| 1, &Progress::silent(), divided).into_iter().flatten().collect();
         let margin = panels.iter().filter(|p| p.coefficients.is_some()).map(|p| p.error).fold(0.0, f64::max);
@@ -100,24 +103,21 @@ impl Path {
 }
 
 impl Sampled<'_> {
-    /// A panel, or its halves where they are nearer; `above` is the error of the panel that this one is half of.
-    fn divide(&self, from: u64, to: u64, above: f64) -> Vec<Panel> {
+    /// A panel, or its halves where it is not near enough.
+    fn divide(&self, from: u64, to: u64) -> Vec<Panel> {
         let panel = self.panel(from, to);
-        // Where halving has ceased to help, what is left is rounding.
-        let is_rounding = panel.error > 0.25 * above && panel.coefficients.is_some();
-        if panel.error <= self.target || is_rounding {
+        if panel.error <= self.target.max(panel.rounding) {
             return vec![panel];
         }
         if to - from == 1 {
             return vec![Panel { coefficients: None, ..panel }];
         }
-        let (middle, error) = (from + (to - from) / 2, panel.error);
-        [self.divide(from, middle, error), self.divide(middle, to, error)].into_iter().flatten().collect()
+        let middle = from + (to - from) / 2;
+        [self.divide(from, middle), self.divide(middle, to)].into_iter().flatten().collect()
     }
 
     fn panel(&self, from: u64, to: u64) -> Panel {
-        let mut samples: Vec<Coordinates> =
-            (0..NODES).map(|k| Coordinates::of(&self.at(from, to, node(k)))).collect();
+        let mut samples: Vec<Coordinates> = (0..NODES).map(|k| Coordinates::of(&self.at(from, to, node(k)))).collect();
         for k in 1..NODES {
             let (before, rest) = samples.split_at_mut(k);
             rest[0].align(&before[k - 1]);
@@ -132,8 +132,15 @@ impl Sampled<'_> {
             exact.distance(&coefficients.iter().map(|c| clenshaw(c, x)).collect::<Vec<_>>())
         });
         let worst = errors.iter().fold(0.0_f64, |most, e| if *e > most || e.is_nan() { *e } else { most });
-        let error = SAFETY * worst.max(ROUNDED / SAFETY * scale);
-        Panel { from, to, coefficients: error.is_finite().then_some(coefficients), error }
+        // Rounding shows at some of the points at least by an epsilon.
+        let error = SAFETY * worst.max(f64::EPSILON * scale);
+        Panel {
+            from,
+            to,
+            coefficients: error.is_finite().then_some(coefficients),
+            error,
+            rounding: SAFETY * ROUNDED * scale,
+        }
     }
 
     /// The exact values at a point x of a panel, -1 <= x <= 1.
@@ -202,11 +209,8 @@ impl Coordinates {
             let range = first..first + length;
             let (a, b) = (&self.values[range.clone()], &other[range]);
             let apart = |sign: f64| a.iter().zip(b).map(|(x, y)| x - sign * y).fold(0.0, f64::hypot);
-            let distance = if *is_attitude {
-                4.0 * (0.5 * apart(1.0).min(apart(-1.0))).min(1.0).asin()
-            } else {
-                apart(1.0)
-            };
+            let distance =
+                if *is_attitude { 4.0 * (0.5 * apart(1.0).min(apart(-1.0))).min(1.0).asin() } else { apart(1.0) };
             largest = if distance > largest || distance.is_nan() { distance } else { largest };
             first += length;
         }

@@ -150,7 +150,8 @@ pub fn search(need: &Need<'_>, candidate: Candidate, precision: Precision) -> Se
     let most = most_steps(candidate, precision);
     let run = |m: u64| attempt(need, candidate, precision, m * need.unit);
     // The two doublings that bear out a long run are not watched at every step.
-    let double = |m: u64| if m * need.unit > LONG { sampled(need, candidate, precision, m * need.unit) } else { run(m) };
+    let double =
+        |m: u64| if m * need.unit > LONG { sampled(need, candidate, precision, m * need.unit) } else { run(m) };
     let mut doubled: Vec<Tried> = Vec::new();
     let mut m = 1;
     loop {

@@ -177,7 +177,12 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
         Some(level) if e.is_some_and(|e| e <= level) => " - met",
         Some(_) => " - missed",
     };
-    let mut lines = vec![format!("{}: {} at worst over all of them{}", counted(again.steps, "step"), error(again.error), verdict(again.error))];
+    let mut lines = vec![format!(
+        "{}: {} at worst over all of them{}",
+        counted(again.steps, "step"),
+        error(again.error),
+        verdict(again.error)
+    )];
     if pick.tried.steps == 1 {
         lines.push("one step is the whole run".to_owned());
     } else if asked.frames == Some(pick.tried.steps) {
@@ -221,10 +226,10 @@ fn runner_up(asked: &Asked<'_>, best: &Pick, other: &Pick, unit: &str) -> String
 
 /// Every method with what is stored, in the arithmetic that suits it best.
 fn table(asked: &Asked<'_>, entries: &[Entry]) -> Table {
-    let (frame, step) = ("substeps a frame", "step (s)");
+    let (frame, step) = ("substeps per frame", "step (s)");
     let headers = match asked.frames {
-        Some(_) => ["method", "arithmetic", frame, step, "error", "us a frame", "of the stability limit"],
-        None => ["method", "arithmetic", "steps", step, "error", "us a second", "of the stability limit"],
+        Some(_) => ["method", "arithmetic", frame, step, "error", "us per frame", "of the stability limit"],
+        None => ["method", "arithmetic", "steps", step, "error", "us per second", "of the stability limit"],
     };
     let mut table = Table::new(&headers, &headers[2..6]);
     let mut seen = Vec::new();
@@ -263,7 +268,11 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
 fn reason(asked: &Asked<'_>, entry: &Entry) -> String {
     let least_of = |least: &Option<Tried>, searched: &u64| {
         let least = least.map(|t| format!("least error {} at {}", short(t.error), counted(t.steps, "step")));
-        format!("{}; searched up to {}", least.unwrap_or_else(|| "every run fails".to_owned()), counted(*searched, "step"))
+        format!(
+            "{}; searched up to {}",
+            least.unwrap_or_else(|| "every run fails".to_owned()),
+            counted(*searched, "step")
+        )
     };
     match &entry.found {
         Err(Search::TooMany { about: Some(steps), searched, .. }) => {

@@ -60,7 +60,10 @@ fn seed(text: &str) -> Result<u64, String> {
 
 fn quantity(text: &str) -> Result<Of, String> {
     let known = || Of::NAMED.map(Of::id).join(", ");
-    Of::NAMED.into_iter().find(|of| of.id() == text.trim()).ok_or_else(|| format!("not a quantity; choose from {}", known()))
+    Of::NAMED
+        .into_iter()
+        .find(|of| of.id() == text.trim())
+        .ok_or_else(|| format!("not a quantity; choose from {}", known()))
 }
 
 /// The ensemble or the advice, where the flags ask for it.
