@@ -27,15 +27,16 @@ pub fn advance<T: Real, M: Model<T>, A: Method<T, M>>(
     steps: u64,
 ) -> Result<State<M::Config>, Diverged> {
     let mut s = start;
+    let mut step = method.stepper(model);
     let mut done = 0;
     while done < steps {
         let block = SETTLE_EVERY.min(steps - done);
-        let before = s;
+        let before = (s, step.clone());
         for i in done..done + block {
-            s = model.contact(&s, method.step(model, T::lit(i as f64) * h, h, s));
+            s = model.contact(&s, step(T::lit(i as f64) * h, h, s));
         }
         if !s.is_finite() {
-            return Err(first_non_finite(method, model, before, h, done));
+            return Err(first_non_finite(before.1, model, before.0, h, done));
         }
         done += block;
         if block == SETTLE_EVERY {
@@ -58,9 +59,10 @@ pub fn integrate<T: Real, M: Model<T>, A: Method<T, M>>(
     mut observe: impl FnMut(u64, &State<M::Config>),
 ) -> Result<State<M::Config>, Diverged> {
     let mut s = start;
+    let mut step = method.stepper(model);
     observe(0, &s);
     for i in 0..steps {
-        s = model.contact(&s, method.step(model, T::lit(i as f64) * h, h, s));
+        s = model.contact(&s, step(T::lit(i as f64) * h, h, s));
         if !s.is_finite() {
             return Err(Diverged { step: i + 1 });
         }
@@ -73,21 +75,21 @@ pub fn integrate<T: Real, M: Model<T>, A: Method<T, M>>(
 }
 
 #[cold]
-fn first_non_finite<T: Real, M: Model<T>, A: Method<T, M>>(
-    method: &A,
+fn first_non_finite<T: Real, M: Model<T>>(
+    mut step: impl FnMut(T, T, State<M::Config>) -> State<M::Config>,
     model: &M,
     before: State<M::Config>,
     h: T,
     done: u64,
 ) -> Diverged {
     let mut s = before;
-    let mut step = done;
+    let mut taken = done;
     // The step first: a start that is not finite fails in step 1, as it does in `integrate`.
     loop {
-        s = model.contact(&s, method.step(model, T::lit(step as f64) * h, h, s));
-        step += 1;
+        s = model.contact(&s, step(T::lit(taken as f64) * h, h, s));
+        taken += 1;
         if !s.is_finite() {
-            return Diverged { step };
+            return Diverged { step: taken };
         }
     }
 }

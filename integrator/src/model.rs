@@ -59,10 +59,22 @@ pub trait Model<T: Real> {
     }
 }
 
-/// A one-step rule: the state at t + h from the state at t.
+/// A rule of a step: the state at t + h from the state at t.
 pub trait Method<T: Real, M: Model<T>> {
-    /// One step. A step that cannot be taken (an iteration that does not converge) returns a non-finite state.
+    /// One step, the first of a run. A step that cannot be taken (an iteration that does not converge) returns a non-finite
+    /// state.
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config>;
+
+    /// The steps of one run, one after the other: the function of (t, h, s) that the drivers call. A method with a memory
+    /// keeps it in this function, so that every run starts with none; of a one-step method it is [`Self::step`].
+    #[inline(always)]
+    fn stepper<'a>(&'a self, m: &'a M) -> impl FnMut(T, T, State<M::Config>) -> State<M::Config> + Clone + 'a
+    where
+        Self: Sized,
+        T: 'a,
+    {
+        move |t, h, s| self.step(m, t, h, s)
+    }
 }
 
 impl<T: Real, M: Model<T> + ?Sized> Model<T> for &M {

@@ -3,8 +3,12 @@
 use std::fmt::Debug;
 use std::ops::Neg;
 
-use faer::fx128;
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
+
+use crate::reduction::{LARGE, folded};
+
+/// A number of about 31 digits, the sum of two `f64`. `faer::fx128` is the same type.
+pub use qd::Quad as DoubleDouble;
 
 /// A number, or several lanes of numbers, that a step computes with.
 ///
@@ -56,10 +60,10 @@ pub trait Single: Real + PartialOrd {
     fn to_f64(self) -> f64;
 
     /// The same number in double-double, exactly.
-    fn widen(self) -> fx128;
+    fn widen(self) -> DoubleDouble;
 
     /// The nearest number to a double-double.
-    fn narrow(x: fx128) -> Self;
+    fn narrow(x: DoubleDouble) -> Self;
 
     /// e^x.
     fn exp(self) -> Self;
@@ -173,11 +177,11 @@ macro_rules! real_for_primitive {
                 f64::from(self)
             }
             #[inline]
-            fn widen(self) -> fx128 {
-                fx128::from(f64::from(self))
+            fn widen(self) -> DoubleDouble {
+                DoubleDouble::from(f64::from(self))
             }
             #[inline]
-            fn narrow(x: fx128) -> Self {
+            fn narrow(x: DoubleDouble) -> Self {
                 (x.0 + x.1) as $t
             }
             #[inline]
@@ -207,53 +211,56 @@ real_for_primitive!(f32, 2, libm::sinf, libm::cosf, libm::expf, libm::logf, libm
 const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_183_4e-33];
 
 /// 1 / n! in double-double.
-const INVERSE_FACTORIAL: [fx128; 26] = {
-    let mut table = [fx128::ONE; 26];
+const INVERSE_FACTORIAL: [DoubleDouble; 26] = {
+    let mut table = [DoubleDouble::ONE; 26];
     let mut n = 1;
     while n < 26 {
-        table[n] = table[n - 1].const_div(fx128::from_f64(n as f64));
+        table[n] = table[n - 1].const_div(DoubleDouble::from_f64(n as f64));
         n += 1;
     }
     table
 };
 
 /// Taylor sums of (cos x, sin x / x) for x^2 <= 1/16; the first term left out is x^24/24! < 6e-39.
-fn taylor_double_double(x_squared: fx128) -> (fx128, fx128) {
-    let sum =
-        |parity: usize| (0..12).rev().fold(fx128::ZERO, |sum, k| INVERSE_FACTORIAL[2 * k + parity] - sum * x_squared);
+fn taylor_double_double(x_squared: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    let sum = |parity: usize| {
+        (0..12).rev().fold(DoubleDouble::ZERO, |sum, k| INVERSE_FACTORIAL[2 * k + parity] - sum * x_squared)
+    };
     (sum(0), sum(1))
 }
 
-/// `faer::fx128` has no trigonometric functions: the argument is reduced modulo pi/2 with a three-part constant, divided
-/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6.
-impl Real for fx128 {
+/// `qd` has no trigonometric functions: the argument is reduced modulo pi/2 with a three-part constant, divided
+/// by four, summed by Taylor and doubled back twice. Error below 2e-31 for |x| < 1e6 and for |x| > 2^55, where all digits of
+/// pi that count are used.
+impl Real for DoubleDouble {
     #[inline(always)]
     fn lit(x: f64) -> Self {
         Self::from_f64(x)
     }
     #[inline]
     fn sqrt(self) -> Self {
-        fx128::sqrt(self)
+        DoubleDouble::sqrt(self)
     }
     #[inline]
     fn abs(self) -> Self {
-        fx128::abs(self)
+        DoubleDouble::abs(self)
     }
     fn sin_cos(self) -> (Self, Self) {
-        if !fx128::is_finite(self) {
-            return (fx128::NAN, fx128::NAN);
+        if !DoubleDouble::is_finite(self) {
+            return (DoubleDouble::NAN, DoubleDouble::NAN);
         }
-        let quarters = (self.0 / HALF_PI[0]).round();
-        let k = fx128::from_f64(quarters);
-        let reduced = HALF_PI.iter().fold(self, |x, &part| x.sub_accurate(k * fx128::from_f64(part)));
-        let x = reduced * fx128::from_f64(0.25);
+        let (turned, angle) = if self.0.abs() < LARGE { (0, self) } else { folded(self) };
+        let quarters = (angle.0 / HALF_PI[0]).round();
+        let k = DoubleDouble::from_f64(quarters);
+        let reduced = HALF_PI.iter().fold(angle, |x, &part| x.sub_accurate(k * DoubleDouble::from_f64(part)));
+        let x = reduced * DoubleDouble::from_f64(0.25);
         let (mut cosine, sinc) = taylor_double_double(x * x);
         let mut sine = sinc * x;
         for _ in 0..2 {
             let twice = sine + sine;
-            (sine, cosine) = (twice * cosine, fx128::ONE - twice * sine);
+            (sine, cosine) = (twice * cosine, DoubleDouble::ONE - twice * sine);
         }
-        match quarters.rem_euclid(4.0) as u8 {
+        match (quarters.rem_euclid(4.0) as u64 + turned) % 4 {
             0 => (sine, cosine),
             1 => (cosine, -sine),
             2 => (-sine, -cosine),
@@ -264,40 +271,40 @@ impl Real for fx128 {
         if x_squared.0 <= 0.0625 {
             taylor_double_double(x_squared)
         } else {
-            let x = fx128::sqrt(x_squared);
+            let x = DoubleDouble::sqrt(x_squared);
             let (sine, cosine) = x.sin_cos();
             (cosine, sine / x)
         }
     }
     #[inline]
     fn is_finite(self) -> bool {
-        fx128::is_finite(self)
+        DoubleDouble::is_finite(self)
     }
 }
 
-impl Single for fx128 {
+impl Single for DoubleDouble {
     const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
     #[inline]
     fn to_f64(self) -> f64 {
         self.0 + self.1
     }
     #[inline]
-    fn widen(self) -> fx128 {
+    fn widen(self) -> DoubleDouble {
         self
     }
     #[inline]
-    fn narrow(x: fx128) -> Self {
+    fn narrow(x: DoubleDouble) -> Self {
         x
     }
     fn exp(self) -> Self {
-        fx128::exp(self)
+        DoubleDouble::exp(self)
     }
     fn ln(self) -> Self {
-        fx128::ln(self)
+        DoubleDouble::ln(self)
     }
     /// One Newton step from the `f64` angle a: a + (y cos a - x sin a) / |(x, y)|; what is left is the cube of 1e-16.
     fn atan2(self, other: Self) -> Self {
-        let angle = fx128::from_f64(libm::atan2(self.0, other.0));
+        let angle = DoubleDouble::from_f64(libm::atan2(self.0, other.0));
         let radius = (self * self + other * other).sqrt();
         if radius.0 == 0.0 || !radius.is_finite() {
             return angle;
@@ -308,11 +315,11 @@ impl Single for fx128 {
     fn round(self) -> Self {
         let high = self.0.round();
         if high == self.0 {
-            return fx128::from_f64(high) + fx128::from_f64(self.1.round());
+            return DoubleDouble::from_f64(high) + DoubleDouble::from_f64(self.1.round());
         }
         // Where the high part lies half way, the low part decides.
         let up = high - self.0;
         let beyond_half = up.abs() == 0.5 && self.1 * up < 0.0;
-        fx128::from_f64(if beyond_half { high - 2.0 * up } else { high })
+        DoubleDouble::from_f64(if beyond_half { high - 2.0 * up } else { high })
     }
 }

@@ -10,10 +10,13 @@ use reports::{Series, Table, Verdict};
 fn main() -> Result<(), Error> {
     let output = OutputDir::create("target/gallery")?;
     let mut blocks = vec![Block::Text("One of each kind.".to_owned()), table(), Block::Claims(claims())];
-    for figure in [convergence(), double_double(), drift(), linear(), stability(), radius(), empty(), many()] {
+    for figure in all() {
         let svg = reports::svg(&figure)?;
-        output.write(&format!("{}.svg", figure.id), &svg)?;
-        blocks.push(Block::Figure { figure, svg });
+        if reports::DRAWS_PNG {
+            output.write(&format!("{}.png", figure.id), reports::png(&svg, &figure.id)?)?;
+        }
+        output.write(&format!("{}.svg", figure.id), svg)?;
+        blocks.push(Block::Figure(figure));
     }
     let [id, title, intro] = ["all", "All kinds", "What the drawing can do."].map(str::to_owned);
     let [head, text] = ["RK4 keeps its order", "Fourth order down to the round-off of f64."].map(str::to_owned);
@@ -27,6 +30,10 @@ fn main() -> Result<(), Error> {
     };
     output.write("index.html", page.html()?)?;
     Ok(())
+}
+
+fn all() -> [Figure; 10] {
+    [convergence(), double_double(), drift(), linear(), coincident(), stability(), disc(), radius(), empty(), many()]
 }
 
 fn table() -> Block {
@@ -159,6 +166,39 @@ fn stability() -> Figure {
     let layers =
         vec![Layer::Cells(cells), theory, Layer::Guide { axis: AxisName::X, at: 2.0, label: "h ω = 2".to_owned() }];
     figure("stability", title, Axis::linear("h ω"), Axis::linear("damping ratio ζ"), layers)
+}
+
+fn coincident() -> Figure {
+    let names = ["full, semi-implicit, with the gyroscopic term in the body frame", "momentum", "one step a period"];
+    let mut layers: Vec<Layer> = (0..3)
+        .map(|i| {
+            let points = errors(2.0, if i < 2 { 1.0 } else { 1.02 }, 1e-14);
+            let bend = |[h, e]: [f64; 2]| [h, if i == 2 && h > 0.01 { 30.0 * e } else { e }];
+            Layer::Series(Series::new(names[i], i, points.into_iter().map(bend).collect()))
+        })
+        .collect();
+    let theory = errors(2.0, 1.0, 0.0);
+    layers.push(Layer::Curve { name: "theory".to_owned(), points: theory, color: None });
+    let title = "Lines that lie on each other are all seen";
+    figure("coincident", title, Axis::log("h (s)"), Axis::log("error (m)"), layers)
+}
+
+fn disc() -> Figure {
+    let (nx, ny) = (120, 120);
+    let at = |i: usize| -3.0 + 4.0 * (i as f64 + 0.5) / 120.0;
+    let value = |i: usize| {
+        let (x, y) = (at(i % nx) + 1.0, at(i / nx) + 1.0);
+        Some(f64::from(u8::from(x.hypot(y) > 1.0)))
+    };
+    let palette = Palette::Categories { names: ["shrinks", "grows"].map(str::to_owned).to_vec() };
+    let values = (0..nx * ny).map(value).collect();
+    let cells = Cells { x0: -3.0, x1: 1.0, nx, y0: -2.0, y1: 2.0, ny, values, palette };
+    let circle = (0..=100).map(|i| f64::from(i) * std::f64::consts::TAU / 100.0);
+    let points = circle.map(|phi| [phi.cos() - 1.0, phi.sin()]).collect();
+    let theory = Layer::Curve { name: "theory, |R| = 1".to_owned(), points, color: None };
+    let [x, y] = ["Re h λ", "Im h λ"].map(Axis::linear);
+    let title = "Where one step of explicit Euler shrinks y";
+    Figure { equal_axes: true, ..figure("disc", title, x, y, vec![Layer::Cells(cells), theory]) }
 }
 
 fn radius() -> Figure {

@@ -15,6 +15,20 @@ pub enum Error {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// Another process has the lock of an output directory.
+    #[error("another run is writing into {}; wait until it has ended, or choose another directory", path.display())]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// A path that was given for a file and leads to something else.
+    #[error("cannot write {}: it is {found}; give the name of a file", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+        /// What is there.
+        found: &'static str,
+    },
     /// A file name that would leave the output directory, or that names no file.
     #[error("'{name}' is not a name inside {}: give a relative path without '..'", root.display())]
     OutsideOutput {
@@ -51,7 +65,7 @@ pub enum Error {
         /// What was found and what was expected.
         message: String,
     },
-    /// The drawing library refused.
+    /// A drawing that cannot be made a PNG.
     #[error("figure '{figure}' cannot be drawn: {message}")]
     Drawing {
         /// The figure's id.

@@ -25,6 +25,9 @@ pub struct Figure {
     pub width: u32,
     /// Height in CSS pixels.
     pub height: u32,
+    /// One unit is as long on either axis, so that a disc is round; both axes linear.
+    #[serde(default)]
+    pub equal_axes: bool,
 }
 
 impl Default for Figure {
@@ -40,6 +43,7 @@ impl Default for Figure {
             data: String::new(),
             width: 800,
             height: 560,
+            equal_axes: false,
         }
     }
 }

@@ -7,13 +7,13 @@
 //! Figure  -> plot::svg         -> SVG   -> png -> PNG
 //! Claim   -> claim::exit_code  -> 0 or 1
 //! Page    -> Page::html        -> one self-contained HTML file
-//! bytes   -> OutputDir::write  -> a file, whole or not at all
+//! bytes   -> OutputDir         -> files, all of them or none
 //! ```
 //!
 //! Invariants:
 //! - The same input gives the same bytes: no clock, no random number, no font of the machine, no hash order.
 //! - Nothing but [`files`] touches the disk.
-//! - The plotting library is named in [`plot`] alone, so that its faults are met and tested in one place.
+//! - Drawings name looks by class; colours and line styles stand in one list.
 //! - A value that cannot be drawn (NaN, infinite, not positive on a logarithmic axis) is left out, never moved.
 
 pub mod claim;

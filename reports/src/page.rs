@@ -5,7 +5,7 @@ mod opening;
 
 pub use block::Block;
 
-use crate::{Claim, Error, Figure, Verdict};
+use crate::{Claim, Error, Figure, Verdict, plot};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::HashSet;
 
@@ -62,7 +62,8 @@ impl Page {
     ///
     /// # Errors
     /// [`Error::Page`] when two sections, figures, groups or claims share an id, or a finding names a figure or a claim that
-    /// the page lacks; [`Error::Formula`] for a formula that cannot be typeset.
+    /// the page lacks; [`Error::Formula`] for a formula that cannot be typeset, [`Error::Figure`] for
+    /// a figure that cannot be drawn.
     pub fn html(&self) -> Result<String, Error> {
         self.check()?;
         let sections = self.sections.iter().map(Section::markup).collect::<Result<Vec<_>, _>>()?;
@@ -74,13 +75,13 @@ impl Page {
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="color-scheme" content="light dark";
                     title { (self.title) }
-                    style { (PreEscaped(STYLE)) }
+                    style { (PreEscaped(plot::of_page())) (PreEscaped(STYLE)) }
                 }
                 body {
                     a.skip href="#main" { "Skip to the content" }
                     (self.navigation())
                     div.column {
-                        main #main { (self.opening()) @for section in &sections { (section) } }
+                        main #main { (self.opening()?) @for section in &sections { (section) } }
                         footer {
                             h2 { "Where these numbers come from" }
                             dl { @for (name, value) in &self.footer { dt { (name) } dd { (value) } } }
@@ -126,20 +127,19 @@ impl Page {
         self.sections.iter().flat_map(Section::claims).collect()
     }
 
-    /// The figure of that id with its drawing.
-    fn figure(&self, id: &str) -> Option<(&Figure, &str)> {
-        self.blocks().into_iter().find_map(|block| match block {
-            Block::Figure { figure, svg } if figure.id == id => Some((figure, svg.as_str())),
-            _ => None,
-        })
+    fn figure(&self, id: &str) -> Option<&Figure> {
+        self.figures().find(|figure| figure.id == id)
+    }
+
+    fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks()
+            .into_iter()
+            .filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None })
     }
 
     fn check(&self) -> Result<(), Error> {
         let blocks = self.blocks();
-        let figures = unique(
-            "figure",
-            blocks.iter().filter_map(|b| if let Block::Figure { figure, .. } = b { Some(&figure.id) } else { None }),
-        )?;
+        let figures = unique("figure", self.figures().map(|figure| &figure.id))?;
         let groups = blocks.iter().filter_map(|b| if let Block::Group { id, .. } = b { Some(id) } else { None });
         unique("section", self.sections.iter().map(|section| &section.id).chain(groups))?;
         let claims = unique("claim", self.claims().into_iter().map(|claim| &claim.id))?;

@@ -12,7 +12,7 @@ const PIXELS: f32 = 2.0;
 /// The drawing, as [`crate::svg`] gives it, as a PNG with two pixels for each CSS pixel; `figure` is its id, for errors.
 ///
 /// # Errors
-/// [`Error::Drawing`] when the drawing library refuses, and always where the feature `png` is missing.
+/// [`Error::Drawing`] when the rasterizer refuses the drawing, and always where the feature `png` is missing.
 #[cfg(feature = "png")]
 pub fn png(svg: &str, figure: &str) -> Result<Vec<u8>, Error> {
     use resvg::tiny_skia::{Pixmap, Transform};

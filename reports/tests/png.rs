@@ -5,7 +5,7 @@ use reports::{Axis, Figure, Layer, Series};
 use resvg::tiny_skia::Pixmap;
 
 fn figure() -> Figure {
-    let series = Series { name: "RK4".to_owned(), points: vec![[0.1, 1e-3], [0.01, 1e-7]], ..Series::default() };
+    let series = Series::new("RK4", 0, vec![[0.1, 1e-3], [0.01, 1e-7]]);
     Figure {
         id: "sample".to_owned(),
         title: "Order of RK4".to_owned(),
@@ -52,4 +52,14 @@ fn text_is_drawn_with_the_embedded_font() {
 fn what_is_no_drawing_is_refused_by_name() {
     let error = reports::png("<svg", "broken").expect_err("not an SVG");
     assert!(error.to_string().contains("'broken'"), "{error}");
+}
+
+// Fails if: the rules of the drawing's style are not read, or those for a dark ground are taken.
+#[test]
+fn colours_are_those_of_the_style_by_day() {
+    let pixels = drawn(&figure()).1;
+    let count = |wanted: [u8; 3]| pixels.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == wanted).count();
+    // A line across most of the chart, at least two pixels wide, in the first colour; the white ground around it.
+    let (line, ground) = (count([0xd5, 0x5e, 0x00]), count([255, 255, 255]));
+    assert!(line > 1000 && ground > pixels.pixels().len() / 2, "{line} {ground}");
 }

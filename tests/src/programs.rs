@@ -58,14 +58,15 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// The files of a directory by name, with their bytes; none if it is not there.
+/// The files of a directory by name, with their bytes; none if it is not there. What is hidden is no part of a report.
 ///
 /// # Panics
 /// If a file cannot be read.
 pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(directory).into_iter().flatten().map(|entry| entry.expect("readable").path());
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    entries.map(|path| (name(&path), fs::read(path).expect("readable"))).collect()
+    let visible = entries.filter(|path| !name(path).starts_with('.'));
+    visible.map(|path| (name(&path), fs::read(path).expect("readable"))).collect()
 }
 
 /// What is the same in two runs of one plan: neither the files with times in them, those of the tradeoff study but for its

@@ -8,6 +8,7 @@ use measure::rotation::long::{disc_runs, drift, long_run, long_starts};
 use measure::rotation::{Experiment, Rotation, Row, Scheme};
 use measure::study::Study;
 use reports::{Claim, Verdict};
+use scenes::run::{Precision, Run};
 
 fn scheme(id: &str) -> Scheme {
     Scheme::from_id(id).unwrap_or_else(|| panic!("{id} is compared"))

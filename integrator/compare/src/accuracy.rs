@@ -2,8 +2,6 @@
 
 use std::hint::black_box;
 
-use studies::scenes::{Kepler, Pendulum, TorqueFreeSpin};
-
 use crate::ours::{Solver, flat_solvers, spin_solvers};
 use crate::peers::{End, differential_equations_dop853, ode_solvers_dop853};
 use crate::problem::{Planet, Problem, Spin, Swing};
@@ -196,18 +194,18 @@ fn final_round<P: Problem<N>, const N: usize>(
 
 /// All contests: each scene for its own horizon and for 32 of them, where the cost of starting no longer shows.
 pub fn all(rounds: usize) -> Vec<Row> {
-    let (pendulum, kepler, spin) = (Pendulum::default(), Kepler::default(), TorqueFreeSpin::default());
+    let (swing, planet, spin) = (Swing::default(), Planet::default(), Spin::default());
     let mut rows = Vec::new();
     for horizons in [1.0, 32.0] {
         let end_s = horizons * Swing::horizon_s();
-        let solvers = flat_solvers::<_, 1, 2>(&pendulum, Swing::exact(0.0), end_s);
-        rows.extend(contest(Swing::default(), &solvers, end_s, rounds));
+        let solvers = flat_solvers::<_, 1, 2>(&swing, Swing::exact(0.0), end_s);
+        rows.extend(contest(swing, &solvers, end_s, rounds));
         let end_s = horizons * Planet::horizon_s();
-        let solvers = flat_solvers::<_, 2, 4>(&kepler, Planet::exact(0.0), end_s);
-        rows.extend(contest(Planet::default(), &solvers, end_s, rounds));
+        let solvers = flat_solvers::<_, 2, 4>(&planet, Planet::exact(0.0), end_s);
+        rows.extend(contest(planet, &solvers, end_s, rounds));
         let end_s = horizons * Spin::horizon_s();
         let solvers = spin_solvers(&spin, Spin::exact(0.0), end_s);
-        rows.extend(contest(Spin::default(), &solvers, end_s, rounds));
+        rows.extend(contest(spin, &solvers, end_s, rounds));
     }
     rows
 }

@@ -7,9 +7,8 @@ use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, RigidModel, Torqu
 use integrator::{Method, Real, Rotation, State, drive};
 use nalgebra::Vector3;
 use rapier3d_f64::prelude::{MassProperties, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector};
-use studies::scenes::TorqueFreeSpin;
 
-use crate::problem::{Problem, Spin};
+use crate::problem::{INERTIA, Problem, Spin};
 
 /// The body of the scene `torque-free-spin`, free to move.
 #[derive(Clone, Copy)]
@@ -38,7 +37,7 @@ const VELOCITY: [f64; 3] = [0.5, -0.25, 0.75];
 /// The body's law and its start, the same in every lane.
 pub fn brick<T: Real>() -> (Free<T>, Moving<T>) {
     let [w, x, y, z, a, b, c] = <Spin as Problem<7>>::exact(0.0).map(T::lit);
-    let model = BodyOmega::new(Brick(Vector3::from(TorqueFreeSpin::default().inertia.map(T::lit))));
+    let model = BodyOmega::new(Brick(Vector3::from(INERTIA.map(T::lit))));
     let at = Kinematics {
         position: Vector3::repeat(T::lit(0.0)),
         velocity: Vector3::from(VELOCITY.map(T::lit)),

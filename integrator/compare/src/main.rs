@@ -17,6 +17,7 @@
 
 mod accuracy;
 mod bodies;
+mod exact;
 mod ours;
 mod peers;
 mod problem;

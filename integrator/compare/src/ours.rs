@@ -1,4 +1,4 @@
-//! The integrator on the scenes themselves: every method, in plain and in fused arithmetic.
+//! The integrator on the problems: every method, in plain and in fused arithmetic.
 
 use std::hint::black_box;
 
@@ -12,7 +12,8 @@ use integrator::pose::Fixed;
 use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, RigidModel, WorldMomentum, WorldOmega};
 use integrator::{Method, Model, Real, Rotation, State, Vector, drive};
 use nalgebra::{SVector, Vector3};
-use studies::scenes::TorqueFreeSpin;
+
+use crate::problem::Spin;
 
 /// One number, out of its arithmetic.
 pub trait Plain: Real {
@@ -151,7 +152,7 @@ macro_rules! spin_solvers {
 }
 
 /// Every method on the free body, for what each may store.
-pub fn spin_solvers(scene: &TorqueFreeSpin, y0: [f64; 7], end_s: f64) -> Vec<Solver<'_, 7>> {
+pub fn spin_solvers(scene: &Spin, y0: [f64; 7], end_s: f64) -> Vec<Solver<'_, 7>> {
     spin_solvers! { scene, y0, end_s;
         f64, "f64", BodyOmega: ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4, ImplicitEuler, ImplicitMidpoint,
             ImplicitGyroscopic, RestoredMomentum, FreeSplitting;

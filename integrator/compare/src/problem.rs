@@ -1,9 +1,11 @@
-//! The problems as everybody gets them: y' = f(t, y) on plain numbers, with the exact motion of the same scene.
+//! The problems as everybody gets them, y' = f(t, y) on plain numbers, and as models of the integrator; with exact motions.
 
-use integrator::Rotation;
-use nalgebra::Vector3;
-use studies::scene::{Motion, RigidMotion, Scene};
-use studies::scenes::{Kepler, Oscillator, Pendulum, TorqueFreeSpin};
+use integrator::pose::Fixed;
+use integrator::rigid_body::{Kinematics, RigidBody, Torque};
+use integrator::{Model, Real, Rotation, State};
+use nalgebra::{Vector1, Vector2, Vector3};
+
+use crate::exact;
 
 /// A scene as an ordinary differential equation in N numbers.
 pub trait Problem<const N: usize>: Copy {
@@ -15,7 +17,7 @@ pub trait Problem<const N: usize>: Copy {
     /// f(y); none of these depends on the time.
     fn rate(&self, y: &[f64; N]) -> [f64; N];
 
-    /// The exact y at the time `t_s`.
+    /// The exact y at the time `t_s`; NaN at a time that [`exact`] does not know.
     fn exact(t_s: f64) -> [f64; N];
 
     /// The horizon of the scene, s.
@@ -25,58 +27,104 @@ pub trait Problem<const N: usize>: Copy {
     fn error(got: &[f64; N], exact: &[f64; N]) -> f64;
 }
 
-/// x'' = -w^2 x.
+/// x'' = -w^2 x, the scene `oscillator`.
 #[derive(Clone, Copy)]
 pub struct Spring {
     /// -w^2, 1/s^2.
     pub minus_w_squared: f64,
 }
 
-/// theta'' = -w0^2 sin theta.
+/// theta'' = -w0^2 sin theta, the scene `pendulum`.
 #[derive(Clone, Copy)]
 pub struct Swing {
     /// -w0^2, 1/s^2.
     pub minus_w0_squared: f64,
 }
 
-/// r'' = -mu r / |r|^3.
+/// r'' = -mu r / |r|^3, the scene `kepler`.
 #[derive(Clone, Copy)]
 pub struct Planet {
     /// -mu, m^3/s^2.
     pub minus_mu: f64,
 }
 
-/// q' = q (0, omega) / 2, omega' = I^-1 (I omega x omega), in the body frame.
+/// q' = q (0, omega) / 2, omega' = I^-1 (I omega x omega), in the body frame: the scene `torque-free-spin`.
 #[derive(Clone, Copy)]
 pub struct Spin {
     /// ((I2 - I3) / I1, (I3 - I1) / I2, (I1 - I2) / I3).
     pub ratios: [f64; 3],
 }
 
+/// Principal moments of inertia of [`Spin`], kg m^2.
+pub const INERTIA: [f64; 3] = [1.25, 0.75, 1.75];
+
 impl Default for Spring {
     fn default() -> Self {
-        let Oscillator { mass, stiffness, .. } = Oscillator::default();
-        Spring { minus_w_squared: -stiffness / mass }
+        Spring { minus_w_squared: -6.0 / 1.5 }
     }
 }
 
 impl Default for Swing {
     fn default() -> Self {
-        let Pendulum { gravity, length, .. } = Pendulum::default();
-        Swing { minus_w0_squared: -gravity / length }
+        Swing { minus_w0_squared: -9.8125 / 1.5 }
     }
 }
 
 impl Default for Planet {
     fn default() -> Self {
-        Planet { minus_mu: -Kepler::default().mu }
+        Planet { minus_mu: -2.0 }
     }
 }
 
 impl Default for Spin {
     fn default() -> Self {
-        let [a, b, c] = TorqueFreeSpin::default().inertia;
+        let [a, b, c] = INERTIA;
         Spin { ratios: [(b - c) / a, (c - a) / b, (a - b) / c] }
+    }
+}
+
+impl<T: Real> Model<T> for Spring {
+    type Config = Vector1<T>;
+
+    #[inline(always)]
+    fn rate(&self, _t: T, s: &State<Vector1<T>>) -> Vector1<T> {
+        s.q * T::lit(self.minus_w_squared)
+    }
+    #[inline(always)]
+    fn kick(&self, _t: T, h: T, s: &State<Vector1<T>>) -> Vector1<T> {
+        s.v.zip_map(&s.q, |v, q| (h * T::lit(self.minus_w_squared)).mul_add(q, v))
+    }
+}
+
+impl<T: Real> Model<T> for Swing {
+    type Config = Vector1<T>;
+
+    #[inline(always)]
+    fn rate(&self, _t: T, s: &State<Vector1<T>>) -> Vector1<T> {
+        Vector1::new(s.q.x.sin_cos().0 * T::lit(self.minus_w0_squared))
+    }
+}
+
+impl<T: Real> Model<T> for Planet {
+    type Config = Vector2<T>;
+
+    #[inline(always)]
+    fn rate(&self, _t: T, s: &State<Vector2<T>>) -> Vector2<T> {
+        let square = s.q.x * s.q.x + s.q.y * s.q.y;
+        s.q * (T::lit(self.minus_mu) / (square * square.sqrt()))
+    }
+}
+
+impl<T: Real> RigidBody<T> for Spin {
+    type Position = Fixed<T>;
+
+    #[inline(always)]
+    fn inertia(&self) -> Vector3<T> {
+        Vector3::from(INERTIA.map(T::lit))
+    }
+    #[inline(always)]
+    fn torque(&self, _t: T, _at: &Kinematics<T, Fixed<T>>) -> Torque<T> {
+        Torque::None
     }
 }
 
@@ -96,11 +144,10 @@ impl Problem<2> for Spring {
         [y[1], self.minus_w_squared * y[0]]
     }
     fn exact(t_s: f64) -> [f64; 2] {
-        let s = Motion::<f64>::exact(&Oscillator::default(), t_s);
-        [s.q.x, s.v.x]
+        exact::spring(t_s)
     }
     fn horizon_s() -> f64 {
-        Oscillator::default().info().horizon_s
+        2.75
     }
     fn error(got: &[f64; 2], exact: &[f64; 2]) -> f64 {
         largest(1, got, exact)
@@ -116,11 +163,10 @@ impl Problem<2> for Swing {
         [y[1], self.minus_w0_squared * y[0].sin()]
     }
     fn exact(t_s: f64) -> [f64; 2] {
-        let s = Motion::<f64>::exact(&Pendulum::default(), t_s);
-        [s.q.x, s.v.x]
+        exact::at(&exact::SWING, t_s)
     }
     fn horizon_s() -> f64 {
-        Pendulum::default().info().horizon_s
+        2.75
     }
     fn error(got: &[f64; 2], exact: &[f64; 2]) -> f64 {
         largest(1, got, exact)
@@ -138,11 +184,10 @@ impl Problem<4> for Planet {
         [y[2], y[3], pull * y[0], pull * y[1]]
     }
     fn exact(t_s: f64) -> [f64; 4] {
-        let s = Motion::<f64>::exact(&Kepler::default(), t_s);
-        [s.q.x, s.q.y, s.v.x, s.v.y]
+        exact::at(&exact::PLANET, t_s)
     }
     fn horizon_s() -> f64 {
-        Kepler::default().info().horizon_s
+        2.25
     }
     fn error(got: &[f64; 4], exact: &[f64; 4]) -> f64 {
         largest(2, got, exact)
@@ -167,12 +212,10 @@ impl Problem<7> for Spin {
         ]
     }
     fn exact(t_s: f64) -> [f64; 7] {
-        let at = RigidMotion::<f64>::exact(&TorqueFreeSpin::default(), t_s);
-        let ([w, x, y, z], omega) = (at.attitude.wxyz(), at.omega_body);
-        [w, x, y, z, omega.x, omega.y, omega.z]
+        exact::at(&exact::SPIN, t_s)
     }
     fn horizon_s() -> f64 {
-        TorqueFreeSpin::default().info().horizon_s
+        2.25
     }
     fn error(got: &[f64; 7], exact: &[f64; 7]) -> f64 {
         let parts = |y: &[f64; 7]| {

@@ -6,7 +6,6 @@ use integrator::lanes::{Fused, Pack};
 use integrator::methods::{ExplicitEuler, RestoredMomentum, Rk4, SemiImplicitEuler};
 use integrator::rigid_body::BodyOmega;
 use integrator::{Method, Real};
-use studies::scenes::{Kepler, Oscillator, Pendulum, TorqueFreeSpin};
 use wide::f64x4;
 
 use crate::bodies::{Free, Ours, Rapier};
@@ -86,10 +85,9 @@ fn print_line(name: &str, timing: &Timing, ours: &Timing, steps: u64, error: f64
 }
 
 macro_rules! flat_rk4 {
-    ($rounds:ident, $problem:expr, $scene:expr, $d:literal, $n:literal) => {{
-        let (p, scene) = ($problem, $scene);
-        let y0 = exact_start(p);
-        let scene = &scene;
+    ($rounds:ident, $problem:expr, $d:literal, $n:literal) => {{
+        let p = $problem;
+        let (y0, scene) = (exact_start(p), &p);
         compare_as(
             p,
             $rounds,
@@ -127,8 +125,8 @@ fn compare_as<P: Problem<N>, const N: usize>(
 }
 
 fn euler(rounds: usize) -> Vec<Row> {
-    let (p, scene) = (Spring::default(), Oscillator::default());
-    let (y0, scene) = (exact_start(p), &scene);
+    let p = Spring::default();
+    let (y0, scene) = (exact_start(p), &p);
     compare_as(
         p,
         rounds,
@@ -151,8 +149,8 @@ fn euler(rounds: usize) -> Vec<Row> {
 }
 
 fn spinning(rounds: usize) -> Vec<Row> {
-    let (p, scene) = (Spin::default(), TorqueFreeSpin::default());
-    let (y0, scene) = (exact_start(p), &scene);
+    let p = Spin::default();
+    let (y0, scene) = (exact_start(p), &p);
     compare_as(
         p,
         rounds,
@@ -256,10 +254,10 @@ fn bodies(rounds: usize, count: usize) -> Vec<Row> {
 
 /// All comparisons of a step.
 pub fn all(rounds: usize) -> Vec<Row> {
-    let mut rows = flat_rk4!(rounds, Spring::default(), Oscillator::default(), 1, 2);
+    let mut rows = flat_rk4!(rounds, Spring::default(), 1, 2);
     rows.extend(euler(rounds));
-    rows.extend(flat_rk4!(rounds, Swing::default(), Pendulum::default(), 1, 2));
-    rows.extend(flat_rk4!(rounds, Planet::default(), Kepler::default(), 2, 4));
+    rows.extend(flat_rk4!(rounds, Swing::default(), 1, 2));
+    rows.extend(flat_rk4!(rounds, Planet::default(), 2, 4));
     rows.extend(spinning(rounds));
     rows.extend(bodies(rounds, 1));
     rows.extend(bodies(rounds.div_ceil(4), 10_000));

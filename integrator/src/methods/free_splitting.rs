@@ -1,5 +1,6 @@
 use nalgebra::Vector3;
 
+use crate::methods::facts::{Conserved, Facts};
 use crate::model::{Method, State};
 use crate::pose::{Body, Pose, Twist, Update};
 use crate::real::Real;
@@ -16,6 +17,26 @@ use crate::space::Vector;
 /// Source: R. I. McLachlan, Phys. Rev. Lett. 71 (1993) 3043; S. Reich, Physica D 76 (1994) 375.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FreeSplitting;
+
+impl FreeSplitting {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "free-splitting",
+        title: "Splitting into axis rotations",
+        order: 2,
+        evaluations: Some(2),
+        symplectic: Some(true),
+        reversible: Some(true),
+        conserves: &[Conserved::Momentum],
+        formula: "kick h/2, X(h/2) Y(h/2) Z(h) Y(h/2) X(h/2), kick h/2; X(h): turn by h l_x / I_x about the body's x axis",
+        latex: &[
+            r"X_{h/2}\circ Y_{h/2}\circ Z_h\circ Y_{h/2}\circ X_{h/2}\quad\text{between two kicks}\quad l\to l + \tfrac{h}{2}\,\tau",
+            r"X_h: \text{turn by the angle}\ h\,l_x / I_x\ \text{about the body's}\ x\ \text{axis}",
+        ],
+        source: "R. I. McLachlan, Phys. Rev. Lett. 71 (1993) 3043; S. Reich, Physica D 76 (1994) 375",
+        ..Facts::NOTHING_KNOWN
+    };
+}
 
 impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B, U>> for FreeSplitting {
     #[inline(always)]

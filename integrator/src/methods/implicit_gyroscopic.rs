@@ -1,5 +1,6 @@
 use nalgebra::Vector3;
 
+use crate::methods::facts::Facts;
 use crate::model::{Method, State};
 use crate::pose::{Body, Pose, Twist, Update};
 use crate::real::Real;
@@ -15,6 +16,24 @@ use crate::space::{Space, Vector};
 /// Source: E. Catto, Numerical Methods, Game Developers Conference (2015), slides on the gyroscopic torque.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImplicitGyroscopic;
+
+impl ImplicitGyroscopic {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "implicit-gyroscopic",
+        title: "Implicit gyroscopic torque",
+        order: 1,
+        evaluations: Some(1),
+        reversible: Some(false),
+        formula: "omega1 = u - f'(u)^-1 f(u), f(w) = I (w - u) + h w x I w, u = omega0 + h I^-1 tau0",
+        latex: &[
+            r"u = \omega_0 + h\,I^{-1}\tau_0,\quad f(w) = I\,(w - u) + h\,w\times I w",
+            r"\omega_1 = u - f'(u)^{-1} f(u),\quad q_1 = q_0\exp(h\,\omega_1)",
+        ],
+        source: "E. Catto, Numerical Methods, GDC 2015; Bullet, MuJoCo's implicit integrator",
+        ..Facts::NOTHING_KNOWN
+    };
+}
 
 impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B, U>> for ImplicitGyroscopic {
     #[inline(always)]

@@ -1,5 +1,5 @@
-//! The one list of methods. A new method is one file beside this one, and one line in `for_each_method` or, if it exists
-//! for rigid bodies only, in `for_each_rigid_step`.
+//! The lists of methods. A new method is one file beside this one, with its step and its [`Facts`], and one line in
+//! `general_list` or, if it exists for rigid bodies only, in `rigid_list`.
 //!
 //! A step for rigid bodies is a [`Method`] for one of the models of [`rigid_body`](crate::rigid_body). This one turns the
 //! body with the mean of its old and new angular velocity:
@@ -53,26 +53,40 @@
 //! assert!((gained(512) / gained(1024) - 2.0).abs() < 0.02);
 //! ```
 //!
-//! In this crate the impl is a file `methods/mean_omega.rs`, and its line
-//! `MeanOmega, BodyOmega, Body, "mean-omega", "Mean angular velocity", 1, 1, [], "omega1 = ...", "source";` gives it a name,
-//! its claims in the rotation study and its laws in the tests.
+//! In this crate the impl is a file `methods/mean_omega.rs` with `MeanOmega::FACTS`, and its line `MeanOmega, BodyOmega, Body;`
+//! gives it a name, its claims in the rotation study and its laws in the tests.
 
+mod adams_bashforth;
+mod composition;
 mod explicit_euler;
+mod facts;
 mod free_splitting;
+mod heun;
 mod implicit_euler;
 mod implicit_gyroscopic;
 mod implicit_midpoint;
+mod kutta3;
 mod momentum_midpoint;
 mod restored_momentum;
 mod rk4;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
+pub use adams_bashforth::{
+    AdamsBashforth2, AdamsBashforth2Filled, AdamsBashforth3, AdamsBashforth3Filled, AdamsBashforth4,
+    AdamsBashforth4Filled, AdamsBashforth5, AdamsBashforth5Filled, MeanOfTwoSlopes,
+};
+pub use composition::{
+    SplittingKahanLi6, SplittingKahanLi8, SplittingSuzuki4, VerletKahanLi6, VerletKahanLi8, VerletSuzuki4,
+};
 pub use explicit_euler::ExplicitEuler;
+pub use facts::{Conserved, Facts, LinearTheory, Rational};
 pub use free_splitting::FreeSplitting;
+pub use heun::Heun;
 pub use implicit_euler::ImplicitEuler;
 pub use implicit_gyroscopic::ImplicitGyroscopic;
 pub use implicit_midpoint::ImplicitMidpoint;
+pub use kutta3::Kutta3;
 pub use momentum_midpoint::MomentumMidpoint;
 pub use restored_momentum::RestoredMomentum;
 pub use rk4::Rk4;
@@ -81,105 +95,131 @@ pub use velocity_verlet::VelocityVerlet;
 
 use crate::model::{Method, Model};
 use crate::pose::{Body, Exponential, Linear, World};
-use crate::real::Single;
+use crate::real::{Real, Single};
 use crate::rigid_body::{AttitudeUpdate, BodyOmega, RigidBody, RigidModel, Storage, WorldMomentum};
 
-/// Calls a macro with every general method: type, id, order, whether it solves equations.
-macro_rules! for_each_method {
-    ($call:ident) => {
-        $call! {
-            ExplicitEuler, "explicit-euler", "Explicit Euler", 1, false;
-            SemiImplicitEuler, "semi-implicit-euler", "Semi-implicit Euler", 1, false;
-            VelocityVerlet, "velocity-verlet", "Velocity Verlet", 2, false;
-            Rk4, "rk4", "RK4", 4, false;
-            ImplicitEuler, "implicit-euler", "Implicit Euler", 1, true;
-            ImplicitMidpoint, "implicit-midpoint", "Implicit midpoint", 2, true;
-        }
-    };
-}
-
 /// Work to be done with a method that is chosen at run time: one branch a run, none a step.
-pub trait Visitor<T: Single, M: Model<T>> {
+pub trait Visitor<T: Real, M: Model<T>> {
     /// What the work gives.
     type Output;
     /// Does it, compiled for the one method.
     fn visit<A: Method<T, M>>(self, method: &A) -> Self::Output;
 }
 
-macro_rules! define_list {
-    ($($method:ident, $id:literal, $title:literal, $order:literal, $implicit:literal;)*) => {
-        /// The name of a method.
+/// The names of a list of steps.
+macro_rules! names {
+    ($(#[$doc:meta])* $list:ident: $($step:ident),* $(,)?) => {
+        $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum MethodId {
+        pub enum $list {
             $(
-                #[doc = concat!($title, ".")]
-                $method,
+                #[doc = concat!("[`struct@", stringify!($step), "`].")]
+                $step,
             )*
         }
 
-        impl MethodId {
-            /// Every method, in the order in which it is shown.
-            pub const ALL: &'static [MethodId] = &[$(MethodId::$method),*];
+        impl $list {
+            /// Every one, in the order in which it is shown.
+            pub const ALL: &'static [$list] = &[$($list::$step),*];
+
+            /// What is known of it.
+            pub const fn facts(self) -> &'static Facts {
+                match self { $($list::$step => &$step::FACTS),* }
+            }
 
             /// The name on the command line and in tables.
             pub fn id(self) -> &'static str {
-                match self { $(MethodId::$method => $id),* }
+                self.facts().id
             }
 
             /// The name in a sentence.
             pub fn title(self) -> &'static str {
-                match self { $(MethodId::$method => $title),* }
+                self.facts().title
             }
 
             /// The order of convergence on a smooth problem.
             pub fn order(self) -> u32 {
-                match self { $(MethodId::$method => $order),* }
+                self.facts().order
             }
+        }
+    };
+}
 
+/// A list of general methods. Those of the core are compiled wherever a method is timed, the others where no time is taken;
+/// an explicit method steps any [`Real`], lanes included, an implicit one a [`Single`].
+macro_rules! general_list {
+    ($(#[$doc:meta])* $list:ident {
+        core explicit: $($core:ident),*;
+        core implicit: $($core_implicit:ident),*;
+        more explicit: $($more:ident),*;
+    }) => {
+        names! { $(#[$doc])* $list: $($core,)* $($core_implicit,)* $($more),* }
+
+        impl $list {
             /// Whether a step solves a system of equations, and so can fail to.
             pub fn is_implicit(self) -> bool {
-                match self { $(MethodId::$method => $implicit),* }
+                self.facts().implicit
             }
 
             /// Hands the method to the visitor.
             pub fn visit<T: Single, M: Model<T>, V: Visitor<T, M>>(self, visitor: V) -> V::Output {
-                match self { $(MethodId::$method => visitor.visit(&$method)),* }
+                match self {
+                    $($list::$core => visitor.visit(&$core),)*
+                    $($list::$core_implicit => visitor.visit(&$core_implicit),)*
+                    $($list::$more => visitor.visit(&$more),)*
+                }
+            }
+
+            /// The same for an explicit method, in lanes too; `None` for an implicit one, of which no code is compiled.
+            pub fn visit_explicit<T: Real, M: Model<T>, V: Visitor<T, M>>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $($list::$core => Some(visitor.visit(&$core)),)*
+                    $($list::$core_implicit => None,)*
+                    $($list::$more => Some(visitor.visit(&$more)),)*
+                }
+            }
+
+            /// As [`Self::visit`], for a method of the core; `None` for another, of which no code is compiled.
+            #[allow(unused_variables, reason = "a list without a core")]
+            pub fn visit_core<T: Single, M: Model<T>, V: Visitor<T, M>>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $($list::$core => Some(visitor.visit(&$core)),)*
+                    $($list::$core_implicit => Some(visitor.visit(&$core_implicit)),)*
+                    $($list::$more => None,)*
+                }
+            }
+
+            /// As [`Self::visit_explicit`], for an explicit method of the core; `None` for another.
+            #[allow(unused_variables, reason = "a list without a core")]
+            pub fn visit_core_explicit<T: Real, M: Model<T>, V: Visitor<T, M>>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $($list::$core => Some(visitor.visit(&$core)),)*
+                    $($list::$core_implicit => None,)*
+                    $($list::$more => None,)*
+                }
             }
         }
     };
 }
-for_each_method!(define_list);
 
-/// What a step keeps to rounding on every torque-free rigid body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Conserved {
-    /// T = omega . I omega / 2.
-    Energy,
-    /// |L|.
-    MomentumNorm,
-    /// L in the world frame, as a vector.
-    Momentum,
+general_list! {
+    /// The name of a method.
+    MethodId {
+        core explicit: ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4;
+        core implicit: ImplicitEuler, ImplicitMidpoint;
+        more explicit: ;
+    }
 }
 
-/// Calls a macro with every step that exists for rigid bodies only: type, the model it is a method for and the frame of
-/// that model, id, title, order, evaluations of the torque in a step, what it conserves, formula, source.
-macro_rules! for_each_rigid_step {
-    ($call:ident) => {
-        $call! {
-            ImplicitGyroscopic, BodyOmega, Body, "implicit-gyroscopic", "Implicit gyroscopic torque", 1, 1, [],
-                "omega1 = u - f'(u)^-1 f(u), f(w) = I (w - u) + h w x I w, u = omega0 + h I^-1 tau0",
-                "E. Catto, Numerical Methods, GDC 2015; Bullet, MuJoCo's implicit integrator";
-            RestoredMomentum, BodyOmega, Body, "restored-momentum", "Explicit gyroscopic torque, |L| restored", 1, 1, [MomentumNorm],
-                "l* = l + h l x omega0, I omega1 = l* |l| / |l*| + h tau0",
-                "PhysX, Jolt, Rapier, Avian";
-            MomentumMidpoint, WorldMomentum, World, "momentum-midpoint", "Stored momentum, midpoint attitude", 2, 2, [Momentum],
-                "qm = q0 exp(h omega(q0, L0) / 2), Lm = L0 + h tau0 / 2, L1 = L0 + h taum, q1 = q0 exp(h omega(qm, Lm))",
-                "C. Runge, Math. Ann. 46 (1895) 167; S. R. Buss, J. Comput. Phys. 164 (2000) 377";
-            FreeSplitting, BodyOmega, Body, "free-splitting", "Splitting into axis rotations", 2, 2, [Momentum],
-                "kick h/2, X(h/2) Y(h/2) Z(h) Y(h/2) X(h/2), kick h/2; X(h): turn by h l_x / I_x about the body's x axis",
-                "R. I. McLachlan, Phys. Rev. Lett. 71 (1993) 3043; S. Reich, Physica D 76 (1994) 375";
-        }
-    };
+general_list! {
+    /// The name of a method that no study runs by itself yet: those of engines, and yardsticks of high order.
+    MoreMethod {
+        core explicit: ;
+        core implicit: ;
+        more explicit: Heun, Kutta3, AdamsBashforth2, AdamsBashforth3, AdamsBashforth4, AdamsBashforth5, AdamsBashforth2Filled,
+            AdamsBashforth3Filled, AdamsBashforth4Filled, AdamsBashforth5Filled, MeanOfTwoSlopes, VerletSuzuki4, VerletKahanLi6,
+            VerletKahanLi8;
+    }
 }
 
 /// Work to be done with a step for rigid bodies that is chosen at run time, and with the model it is a method for.
@@ -190,60 +230,35 @@ pub trait RigidVisitor<T: Single, B: RigidBody<T>> {
     fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Self::Output;
 }
 
-macro_rules! define_rigid_list {
-    ($($step:ident, $model:ident, $frame:ident, $id:literal, $title:literal, $order:literal, $evaluations:literal,
-        [$($conserved:ident),*], $formula:literal, $source:literal;)*) => {
-        /// The name of a step that exists for rigid bodies only.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum RigidStep {
-            $(
-                #[doc = concat!($title, ".")]
-                $step,
-            )*
-        }
+/// A list of steps that exist for rigid bodies only: the step, the model it is a method for, and the frame of that model.
+macro_rules! rigid_list {
+    ($(#[$doc:meta])* $list:ident { $($step:ident, $model:ident, $frame:ident;)* }) => {
+        names! { $(#[$doc])* $list: $($step),* }
 
-        impl RigidStep {
-            /// Every one, in the order in which it is shown.
-            pub const ALL: &'static [RigidStep] = &[$(RigidStep::$step),*];
-
-            /// The name on the command line and in tables.
-            pub fn id(self) -> &'static str {
-                match self { $(RigidStep::$step => $id),* }
-            }
-
-            /// The name in a sentence.
-            pub fn title(self) -> &'static str {
-                match self { $(RigidStep::$step => $title),* }
-            }
-
-            /// The order of convergence on a smooth problem.
-            pub fn order(self) -> u32 {
-                match self { $(RigidStep::$step => $order),* }
-            }
-
-            /// Evaluations of the torque in a step.
+        impl $list {
+            /// Evaluations of the torque in a step; 0 where a step iterates until its equations are solved.
             pub fn evaluations(self) -> u64 {
-                match self { $(RigidStep::$step => $evaluations),* }
+                self.facts().evaluations.unwrap_or(0)
             }
 
             /// What it stores.
             pub fn storage(self) -> Storage {
-                match self { $(RigidStep::$step => Storage::$model),* }
+                match self { $($list::$step => Storage::$model),* }
             }
 
             /// What it keeps to rounding without a torque.
             pub fn conserves(self) -> &'static [Conserved] {
-                match self { $(RigidStep::$step => &[$(Conserved::$conserved),*]),* }
+                self.facts().conserves
             }
 
             /// The step as a formula.
             pub fn formula(self) -> &'static str {
-                match self { $(RigidStep::$step => $formula),* }
+                self.facts().formula
             }
 
             /// Who described it, or uses it.
             pub fn source(self) -> &'static str {
-                match self { $(RigidStep::$step => $source),* }
+                self.facts().source
             }
 
             /// Hands the step, and the body in what it stores, to the visitor.
@@ -254,10 +269,10 @@ macro_rules! define_rigid_list {
                 visitor: V,
             ) -> V::Output {
                 match (self, update) { $(
-                    (RigidStep::$step, AttitudeUpdate::Exponential) => {
+                    ($list::$step, AttitudeUpdate::Exponential) => {
                         visitor.visit(&$step, &$model::<B, Exponential<$frame>>::new(body))
                     }
-                    (RigidStep::$step, AttitudeUpdate::Linear) => {
+                    ($list::$step, AttitudeUpdate::Linear) => {
                         visitor.visit(&$step, &$model::<B, Linear<$frame>>::new(body))
                     }
                 )* }
@@ -265,4 +280,22 @@ macro_rules! define_rigid_list {
         }
     };
 }
-for_each_rigid_step!(define_rigid_list);
+
+rigid_list! {
+    /// The name of a step that exists for rigid bodies only.
+    RigidStep {
+        ImplicitGyroscopic, BodyOmega, Body;
+        RestoredMomentum, BodyOmega, Body;
+        MomentumMidpoint, WorldMomentum, World;
+        FreeSplitting, BodyOmega, Body;
+    }
+}
+
+rigid_list! {
+    /// The name of a step for rigid bodies that no study runs by itself yet.
+    MoreRigidStep {
+        SplittingSuzuki4, BodyOmega, Body;
+        SplittingKahanLi6, BodyOmega, Body;
+        SplittingKahanLi8, BodyOmega, Body;
+    }
+}

@@ -1,3 +1,4 @@
+use crate::methods::facts::{Conserved, Facts};
 use crate::model::{Method, Model, State};
 use crate::pose::{Pose, Update, World};
 use crate::real::Real;
@@ -13,6 +14,25 @@ use crate::space::{Space, Vector};
 /// Source: C. Runge, Math. Ann. 46 (1895) 167 (explicit midpoint); S. R. Buss, J. Comput. Phys. 164 (2000) 377 (L stored).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MomentumMidpoint;
+
+impl MomentumMidpoint {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "momentum-midpoint",
+        title: "Stored momentum, midpoint attitude",
+        order: 2,
+        evaluations: Some(2),
+        reversible: Some(false),
+        conserves: &[Conserved::Momentum],
+        formula: "qm = q0 exp(h omega(q0, L0) / 2), Lm = L0 + h tau0 / 2, L1 = L0 + h taum, q1 = q0 exp(h omega(qm, Lm))",
+        latex: &[
+            r"q_m = \exp(\tfrac{h}{2}\,\omega(q_0, L_0))\,q_0,\quad L_m = L_0 + \tfrac{h}{2}\,\tau_0",
+            r"L_1 = L_0 + h\,\tau_m,\quad q_1 = \exp(h\,\omega(q_m, L_m))\,q_0",
+        ],
+        source: "C. Runge, Math. Ann. 46 (1895) 167; S. R. Buss, J. Comput. Phys. 164 (2000) 377",
+        ..Facts::NOTHING_KNOWN
+    };
+}
 
 impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Method<T, WorldMomentum<B, U>> for MomentumMidpoint {
     #[inline(always)]

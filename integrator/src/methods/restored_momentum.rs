@@ -1,5 +1,6 @@
 use nalgebra::Vector3;
 
+use crate::methods::facts::{Conserved, Facts};
 use crate::model::{Method, State};
 use crate::pose::{Body, Pose, Twist, Update};
 use crate::real::Single;
@@ -15,6 +16,25 @@ use crate::space::{Space, Vector};
 /// Source: the step of PhysX, Jolt (`MotionProperties::ApplyGyroscopicForceInternal`), Rapier and Avian.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestoredMomentum;
+
+impl RestoredMomentum {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "restored-momentum",
+        title: "Explicit gyroscopic torque, |L| restored",
+        order: 1,
+        evaluations: Some(1),
+        reversible: Some(false),
+        conserves: &[Conserved::MomentumNorm],
+        formula: "l* = l + h l x omega0, I omega1 = l* |l| / |l*| + h tau0",
+        latex: &[
+            r"l = I\omega_0,\quad l^\ast = l + h\,l\times\omega_0",
+            r"I\omega_1 = l^\ast\,\frac{|l|}{|l^\ast|} + h\,\tau_0,\quad q_1 = q_0\exp(h\,\omega_1)",
+        ],
+        source: "PhysX, Jolt, Rapier, Avian",
+        ..Facts::NOTHING_KNOWN
+    };
+}
 
 impl<T: Single, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B, U>> for RestoredMomentum {
     #[inline(always)]

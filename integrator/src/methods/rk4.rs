@@ -1,3 +1,4 @@
+use crate::methods::facts::{Facts, LinearTheory, Rational};
 use crate::model::{Method, Model, State};
 use crate::real::Real;
 use crate::space::{Space, Vector};
@@ -11,6 +12,29 @@ use crate::space::{Space, Vector};
 /// example with two commutators.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rk4;
+
+impl Rk4 {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "rk4",
+        title: "RK4",
+        order: 4,
+        evaluations: Some(4),
+        symplectic: Some(false),
+        reversible: Some(false),
+        linear: Some(LinearTheory::RungeKutta(Rational::polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0]))),
+        formula: "q1 = q0 + h (w1 + 2 w2 + 2 w3 + w4 - h [w1, w4] / 2) / 6, v1 = v0 + h (a1 + 2 a2 + 2 a3 + a4) / 6",
+        latex: &[
+            r"a_1 = a(t_0, q_0, v_0),\quad w_1 = v_0",
+            r"a_2 = a(t_0 + \tfrac{h}{2}, q_0 + \tfrac{h}{2} w_1, v_0 + \tfrac{h}{2} a_1),\quad w_2 = v_0 + \tfrac{h}{2} a_1",
+            r"a_3 = a(t_0 + \tfrac{h}{2}, q_0 + \tfrac{h}{2} (w_2 - \tfrac{h}{4} [w_1, w_2]), v_0 + \tfrac{h}{2} a_2),\quad w_3 = v_0 + \tfrac{h}{2} a_2",
+            r"a_4 = a(t_1, q_0 + h w_3, v_0 + h a_3),\quad w_4 = v_0 + h a_3",
+            r"q_1 = q_0 + \tfrac{h}{6} (w_1 + 2 w_2 + 2 w_3 + w_4 - \tfrac{h}{2} [w_1, w_4]),\quad v_1 = v_0 + \tfrac{h}{6} (a_1 + 2 a_2 + 2 a_3 + a_4)",
+        ],
+        source: "W. Kutta, Z. Math. Phys. 46 (1901) 435; on rotations H. Munthe-Kaas, B. Owren, Phil. Trans. R. Soc. A 357 (1999) 957",
+        ..Facts::NOTHING_KNOWN
+    };
+}
 
 impl<T: Real, M: Model<T>> Method<T, M> for Rk4 {
     #[inline(always)]

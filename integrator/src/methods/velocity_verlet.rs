@@ -1,3 +1,6 @@
+use nalgebra::Matrix2;
+
+use crate::methods::facts::{Facts, LinearTheory, Rational};
 use crate::model::{Method, Model, State};
 use crate::real::Real;
 use crate::space::{Space, Vector};
@@ -11,6 +14,26 @@ use crate::space::{Space, Vector};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VelocityVerlet;
 
+impl VelocityVerlet {
+    /// What is known of it.
+    pub const FACTS: Facts = Facts {
+        id: "velocity-verlet",
+        title: "Velocity Verlet",
+        order: 2,
+        evaluations: Some(2),
+        symplectic: Some(true),
+        reversible: Some(true),
+        linear: Some(LinearTheory::Partitioned { velocity: Rational::polynomial(&[1.0, 1.0, 0.5]), oscillator }),
+        formula: "u = v0 + h a0 / 2, q1 = q0 + h w(qh, u), v1 = u + h a(t1, q1, v0 + h a0) / 2",
+        latex: &[
+            r"a_0 = a(t_0, q_0, v_0),\quad q_1 = q_0 + h\,v_0 + \tfrac{h^2}{2}\,a_0",
+            r"a_1 = a(t_1, q_1, v_0 + h\,a_0),\quad v_1 = v_0 + \tfrac{h}{2}\,(a_0 + a_1)",
+        ],
+        source: "L. Verlet, Phys. Rev. 159 (1967) 98; W. Swope et al., J. Chem. Phys. 76 (1982) 637",
+        ..Facts::NOTHING_KNOWN
+    };
+}
+
 impl<T: Real, M: Model<T>> Method<T, M> for VelocityVerlet {
     #[inline(always)]
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
@@ -22,4 +45,12 @@ impl<T: Real, M: Model<T>> Method<T, M> for VelocityVerlet {
         let a1 = m.rate(t + h, &State { q, v: s.v.plus(a0, h) });
         State { q, v: u.plus(a1, half) }
     }
+}
+
+/// The step on x'' = -k x - c x' with h = 1: u = v - (k x + c v) / 2 and so on, multiplied out.
+fn oscillator(k: f64, c: f64) -> Matrix2<f64> {
+    let (half_k, half_c) = (0.5 * k, 0.5 * c);
+    let of_x = -half_k * (2.0 - half_k - c);
+    let of_v = 1.0 - c + half_c * c - half_k * (1.0 - half_c);
+    Matrix2::new(1.0 - half_k, 1.0 - half_c, of_x, of_v)
 }

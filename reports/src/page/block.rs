@@ -31,13 +31,8 @@ pub enum Block {
         /// Text and file name (or `#` and an anchor) of each.
         files: Vec<(String, String)>,
     },
-    /// A figure with its drawing, as [`crate::plot::svg`] gives it.
-    Figure {
-        /// The figure: id, caption, command, data.
-        figure: Figure,
-        /// The drawing.
-        svg: String,
-    },
+    /// A figure, which the page draws.
+    Figure(Figure),
     /// What belongs together, folded under a heading until it is wanted.
     Group {
         /// Anchor, unique within the page.
@@ -71,7 +66,7 @@ impl Block {
             Self::Links { caption, files } => html! {
                 p.source { (caption) ": " @for (i, (text, file)) in files.iter().enumerate() { @if i > 0 { ", " } a href=(file) { (text) } } }
             },
-            Self::Figure { figure, svg } => drawn(figure, svg),
+            Self::Figure(figure) => drawn(figure)?,
             Self::Group { id, title, note, blocks } => {
                 let blocks = blocks.iter().map(Block::markup).collect::<Result<Vec<_>, _>>()?;
                 html! {
@@ -85,18 +80,19 @@ impl Block {
     }
 }
 
-fn drawn(figure: &Figure, svg: &str) -> Markup {
+fn drawn(figure: &Figure) -> Result<Markup, Error> {
     let id = format!("figure-{}", figure.id);
-    html! {
+    let svg = PreEscaped(plot::inline(figure, &id)?);
+    Ok(html! {
         figure #(id) {
-            (scroll(&figure.title, &PreEscaped(plot::inline(svg, &id))))
+            (scroll(&figure.title, &svg))
             figcaption { (figure.caption) }
             p.source {
                 @if !figure.data.is_empty() { "Data: " a href=(figure.data) { (figure.data) } ". " }
                 @if !figure.command.is_empty() { "Made by " code { (figure.command) } }
             }
         }
-    }
+    })
 }
 
 /// A box that scrolls by itself, so that the page never does sideways; reachable by the keyboard.

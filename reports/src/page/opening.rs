@@ -1,12 +1,16 @@
 //! What a busy reader sees first: verdicts by study, what is broken, and the findings.
 
 use super::{Finding, Page, mark};
-use crate::{Verdict, claim, plot};
+use crate::{Error, Verdict, claim, plot};
 use maud::{Markup, PreEscaped, html};
 
 impl Page {
-    pub(super) fn opening(&self) -> Markup {
-        html! {
+    /// # Errors
+    /// A figure that cannot be drawn.
+    pub(super) fn opening(&self) -> Result<Markup, Error> {
+        let numbered = self.findings.iter().enumerate();
+        let findings = numbered.map(|(i, one)| self.finding(i, one)).collect::<Result<Vec<_>, _>>()?;
+        Ok(html! {
             div.opening {
                 h1 { (self.title) }
                 p.lead { (self.lead) }
@@ -15,9 +19,12 @@ impl Page {
                 }
                 (self.verdicts())
                 (self.broken())
-                (self.findings())
+                @if !findings.is_empty() {
+                    h2 #findings { "What matters" }
+                    ol.findings { @for finding in &findings { li { (finding) } } }
+                }
             }
-        }
+        })
     }
 
     fn verdicts(&self) -> Markup {
@@ -61,32 +68,22 @@ impl Page {
         }
     }
 
-    fn findings(&self) -> Markup {
-        html! {
-            @if !self.findings.is_empty() {
-                h2 #findings { "What matters" }
-                ol.findings { @for (i, finding) in self.findings.iter().enumerate() { li { (self.finding(i, finding)) } } }
-            }
-        }
-    }
-
-    fn finding(&self, index: usize, finding: &Finding) -> Markup {
-        let drawn = finding.figure.as_ref().and_then(|id| self.figure(id));
-        html! {
+    fn finding(&self, index: usize, finding: &Finding) -> Result<Markup, Error> {
+        let figure = finding.figure.as_ref().and_then(|id| self.figure(id));
+        let drawn = figure.map(|figure| plot::inline(figure, &format!("finding-{index}"))).transpose()?;
+        Ok(html! {
             div {
                 h3 { (finding.title) }
                 @if !finding.number.is_empty() { p.number { (finding.number) } }
                 p { (finding.text) }
                 p.source {
                     @if let Some(id) = &finding.claim { a href={ "#claim-" (id) } { "The claim" } ". " }
-                    @if let Some((figure, _)) = drawn { a href={ "#figure-" (figure.id) } { "The chart in its study" } "." }
+                    @if let Some(figure) = figure { a href={ "#figure-" (figure.id) } { "The chart in its study" } "." }
                 }
             }
-            @if let Some((figure, svg)) = drawn {
-                div.scroll tabindex="0" role="region" aria-label=(figure.title) {
-                    (PreEscaped(plot::inline(svg, &format!("finding-{index}"))))
-                }
+            @if let (Some(figure), Some(svg)) = (figure, drawn) {
+                div.scroll tabindex="0" role="region" aria-label=(figure.title) { (PreEscaped(svg)) }
             }
-        }
+        })
     }
 }

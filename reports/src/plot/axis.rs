@@ -1,9 +1,7 @@
-//! An axis ready to draw: its ends in mapped coordinates, its ticks, and what the drawing library wants to know of it.
+//! An axis ready to draw: its ends in mapped coordinates and its ticks.
 
 use super::ticks::{Tick, ticks};
 use crate::{Axis, Scale};
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use std::ops::Range;
 
 /// An axis in mapped coordinates: the value itself, or its decimal logarithm.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +39,9 @@ impl AxisMap {
         map(self.scale, value)
     }
 
-    /// Where a mapped coordinate lies between the ends: 0 to 1 inside.
+    /// Where a mapped coordinate lies between the ends: 0 to 1 inside, at most one length of the axis outside.
     pub(super) fn fraction(&self, mapped: f64) -> f64 {
-        (mapped - self.low) / (self.high - self.low)
+        ((mapped - self.low) / (self.high - self.low)).clamp(-1.0, 2.0)
     }
 }
 
@@ -104,35 +102,6 @@ fn apart([low, high]: [f64; 2]) -> [f64; 2] {
     let [low, high] = [low, high].map(|end| end.clamp(-f64::MAX / 8.0, f64::MAX / 8.0));
     let least = (1e-12 * low.abs().max(high.abs())).max(1e-290);
     if high - low >= least { [low, high] } else { [low - least, high + least] }
-}
-
-impl Ranged for AxisMap {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, mapped: &f64, (start, end): (i32, i32)) -> i32 {
-        // The frame is a few thousand units wide and the library clamps nothing here: keep i32 from saturating.
-        let fraction = self.fraction(*mapped).clamp(-1.0, 2.0);
-        start + (fraction * f64::from(end - start)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() {
-            self.minor.clone()
-        } else {
-            self.major.iter().map(|tick| tick.at).collect()
-        }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for AxisMap {
-    fn format_ext(&self, at: &f64) -> String {
-        self.major.iter().find(|tick| tick.at == *at).map_or_else(String::new, |tick| tick.label.clone())
-    }
 }
 
 #[cfg(test)]

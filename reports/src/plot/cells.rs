@@ -1,12 +1,15 @@
 //! Maps: cells of colour, and what the colours mean.
 
 use super::axis::AxisMap;
-use super::canvas::{Canvas, Drawn, GREY, INK, LEFT, Pixel, Rect, UNITS, palette, shorten, stroke, units, wrap};
+use super::frame::Frame;
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet};
+use super::style::area;
+use super::text::wrap;
 use crate::{Axis, Cells, Palette, Scale};
-use plotters::prelude::*;
+use std::collections::BTreeMap;
 
-/// Colour of a cell without a value: no other map colour is grey.
-pub(super) const EMPTY: RGBColor = RGBColor(0xD9, 0xD9, 0xD9);
+/// The look of a cell without a value: no other map colour is grey.
+const EMPTY: &str = "class=\"empty\"";
 /// From light to dark with even steps of lightness and one direction of hue (yellow, green, blue).
 const STOPS: [[f64; 3]; 6] = [
     [255.0, 247.0, 188.0],
@@ -18,6 +21,9 @@ const STOPS: [[f64; 3]; 6] = [
 ];
 /// Steps of the sequential palette; finer ones cannot be told apart and only make the file larger.
 const LEVELS: f64 = 48.0;
+/// Size of the words of a legend, and from one line to the next.
+const SIZE: f64 = 12.5;
+const STEP: f64 = 20.0;
 
 /// What is wrong with a map, if anything.
 pub(super) fn check(cells: &Cells) -> Result<(), String> {
@@ -38,20 +44,22 @@ pub(super) fn check(cells: &Cells) -> Result<(), String> {
     Ok(())
 }
 
-/// A colour between light (0) and dark (1).
-fn sequential(fraction: f64) -> RGBColor {
+/// A colour between light (0) and dark (1): red, green, blue.
+fn sequential(fraction: f64) -> [u8; 3] {
     let place = fraction.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
     let first = (place as usize).min(STOPS.len() - 2);
     let part = place - first as f64;
-    let [r, g, b] = [0, 1, 2].map(|i| (STOPS[first][i] * (1.0 - part) + STOPS[first + 1][i] * part).round() as u8);
-    RGBColor(r, g, b)
+    [0, 1, 2].map(|i| (STOPS[first][i] * (1.0 - part) + STOPS[first + 1][i] * part).round() as u8)
 }
 
-/// Kinds are areas, not lines: the palette, lightened so that curves and words on it can be read.
-pub(super) fn category(index: usize) -> RGBColor {
-    let RGBColor(r, g, b) = palette([2, 5, 0, 1, 3, 6, 7, 4][index % 8]);
-    let light = |c: u8| (f64::from(c) * 0.55 + 255.0 * 0.45).round() as u8;
-    RGBColor(light(r), light(g), light(b))
+/// The look of a value, as an attribute.
+fn level(fraction: f64) -> String {
+    let [r, g, b] = sequential((fraction * LEVELS).round() / LEVELS);
+    format!("fill=\"#{r:02x}{g:02x}{b:02x}\"")
+}
+
+fn kind(index: usize) -> String {
+    format!("class=\"{}\"", area(index))
 }
 
 /// The axis of the values: the ends of the colour scale.
@@ -61,112 +69,92 @@ fn value_axis(cells: &Cells, scale: Scale) -> Option<AxisMap> {
     AxisMap::new(&axis, &[], &values).ok().filter(|(_, any)| *any).map(|(map, _)| map)
 }
 
-fn colors(cells: &Cells) -> Vec<RGBColor> {
+fn looks(cells: &Cells) -> Vec<String> {
     let axis = match &cells.palette {
         Palette::Sequential { scale, .. } => value_axis(cells, *scale),
         Palette::Categories { .. } => None,
     };
-    let color = |value: f64| match (&cells.palette, &axis) {
-        (Palette::Categories { .. }, _) => category(value as usize),
-        (Palette::Sequential { .. }, Some(axis)) => {
-            axis.map_value(value).map_or(EMPTY, |m| sequential((axis.fraction(m) * LEVELS).round() / LEVELS))
-        }
-        (Palette::Sequential { .. }, None) => EMPTY,
+    let look = |value: f64| match &cells.palette {
+        Palette::Categories { .. } => Some(kind(value as usize)),
+        Palette::Sequential { .. } => axis.as_ref().and_then(|axis| Some(level(axis.fraction(axis.map_value(value)?)))),
     };
-    cells.values.iter().map(|value| value.map_or(EMPTY, color)).collect()
+    cells.values.iter().map(|value| value.and_then(look).unwrap_or_else(|| EMPTY.to_owned())).collect()
 }
 
 /// Edges of the cells on the sheet, cut at the frame.
-fn edges(axis: &AxisMap, ends: [f64; 2], count: usize, place: impl Fn(f64) -> i32) -> Option<Vec<i32>> {
+fn edges(axis: &AxisMap, ends: [f64; 2], count: usize, place: impl Fn(f64) -> f64) -> Option<Vec<f64>> {
     let (first, last) = (axis.map_value(ends[0])?, axis.map_value(ends[1])?);
-    let at = |i: usize| first + (last - first) * (i as f64 / count as f64);
+    // Each end has its share, since the difference of two huge ends would be infinite.
+    let at = |i: usize| first * (1.0 - i as f64 / count as f64) + last * (i as f64 / count as f64);
     Some((0..=count).map(|i| place(at(i).clamp(axis.low, axis.high))).collect())
 }
 
-pub(super) fn draw(canvas: &Canvas<'_>, cells: &Cells) -> Drawn {
-    let frame = &canvas.frame;
+/// Runs of equal cells, all those of one look as one path.
+pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, cells: &Cells) {
     let columns = edges(&frame.x, [cells.x0, cells.x1], cells.nx, |m| frame.column(m));
     let rows = edges(&frame.y, [cells.y0, cells.y1], cells.ny, |m| frame.row(m));
-    let (Some(columns), Some(rows)) = (columns, rows) else { return Ok(()) };
-    let colors = colors(cells);
-    for j in (0..cells.ny).rev() {
-        let row = &colors[j * cells.nx..(j + 1) * cells.nx];
+    let (Some(columns), Some(rows)) = (columns, rows) else { return };
+    let looks = looks(cells);
+    let mut paths: BTreeMap<&str, Path> = BTreeMap::new();
+    for (j, row) in looks.chunks(cells.nx).enumerate() {
         let mut start = 0;
-        for end in 1..=cells.nx {
-            if end < cells.nx && row[end] == row[start] {
-                continue;
+        for run in row.chunk_by(|a, b| a == b) {
+            let end = start + run.len();
+            let area = Rect { left: columns[start], right: columns[end], top: rows[j + 1], bottom: rows[j] };
+            if area.width() != 0.0 && area.height() != 0.0 {
+                let path = paths.entry(&run[0]).or_default();
+                *path = std::mem::take(path).rect(area);
             }
-            run(canvas, [columns[start], columns[end]], [rows[j + 1], rows[j]], row[start])?;
             start = end;
         }
     }
-    Ok(())
+    paths.iter().for_each(|(look, path)| sheet.tiles(look, path));
 }
 
-/// One run of equal cells. It reaches a pixel under its right and lower neighbours, which are drawn later, so that
-/// no light seam shows between them.
-fn run(canvas: &Canvas<'_>, x: [i32; 2], y: [i32; 2], color: RGBColor) -> Drawn {
-    let area = canvas.frame.area;
-    let (left, right, top, bottom) = (x[0].min(x[1]), x[0].max(x[1]), y[0].min(y[1]), y[0].max(y[1]));
-    if left == right || top == bottom {
-        return Ok(());
-    }
-    let lap = units(1.0);
-    let rect = Rect { left, top, right: (right + lap).min(area.right), bottom: (bottom + lap).min(area.bottom) };
-    canvas.rect(rect, color.filled())
-}
-
-/// The legend of a map from `at` down, no wider than `width` CSS pixels; gives the unit where it ends.
-pub(super) fn legend(canvas: &Canvas<'_>, cells: &Cells, (x, top): Pixel, width: f64) -> Result<i32, super::Refused> {
+/// The legend of a map from `at` down, no wider than `width` CSS pixels, beside a frame of that height; gives where it ends.
+pub(super) fn legend(sheet: &mut Sheet, cells: &Cells, (x, top): Pixel, width: f64, height: f64) -> f64 {
     let mut y = top;
     match &cells.palette {
         Palette::Categories { names } => {
             for (index, name) in names.iter().enumerate() {
-                swatch(canvas, (x, y), category(index), name, width)?;
-                y += units(20.0);
+                y = swatch(sheet, (x, y), &kind(index), name, width);
             }
         }
         Palette::Sequential { label, scale } => {
-            for words in wrap(label, 12.5, width) {
-                canvas.text(&words, (x, y), 12.5, INK, LEFT)?;
-                y += units(16.0);
-            }
-            y = bar(canvas, value_axis(cells, *scale), (x, y))?;
+            y = sheet.paragraph(label, (x, y), SIZE, width);
+            y = value_axis(cells, *scale).map_or(y, |axis| bar(sheet, &axis.with_ticks(7), (x, y), 0.5 * height));
         }
     }
     if cells.values.iter().any(Option::is_none) {
-        swatch(canvas, (x, y), EMPTY, "no value", width)?;
-        y += units(20.0);
+        y = swatch(sheet, (x, y), EMPTY, "no value", width);
     }
-    Ok(y)
+    y
 }
 
-fn swatch(canvas: &Canvas<'_>, (x, y): Pixel, color: RGBColor, name: &str, width: f64) -> Drawn {
-    let area = Rect { left: x, top: y - units(6.0), right: x + units(16.0), bottom: y + units(6.0) };
-    canvas.rect(area, color.filled())?;
-    canvas.rect(area, stroke(GREY, 0.5))?;
-    canvas.text(&shorten(name, 12.5, width - 22.0), (x + units(22.0), y), 12.5, INK, LEFT)
+fn swatch(sheet: &mut Sheet, (x, y): Pixel, look: &str, name: &str, width: f64) -> f64 {
+    let path = Path::default().rect(Rect { left: x, top: y - 6.0, right: x + 16.0, bottom: y + 6.0 });
+    sheet.tiles(look, &path);
+    sheet.path("thin sg", &path);
+    let lines = wrap(name, SIZE, width - 22.0).len();
+    sheet.paragraph(name, (x + 22.0, y), SIZE, width - 22.0) + if lines > 0 { STEP - 1.3 * SIZE } else { STEP }
 }
 
-fn bar(canvas: &Canvas<'_>, axis: Option<AxisMap>, (x, top): Pixel) -> Result<i32, super::Refused> {
-    let Some(axis) = axis else { return Ok(top) };
-    let axis = axis.with_ticks(7);
-    let height = f64::from(canvas.frame.area.bottom - canvas.frame.area.top) / UNITS * 0.5;
-    let (bottom, right) = (top + units(height), x + units(16.0));
-    let row = |fraction: f64| bottom - units(height * fraction);
-    for level in (0..=LEVELS as i32).rev() {
-        let fraction = f64::from(level) / LEVELS;
+fn bar(sheet: &mut Sheet, axis: &AxisMap, (x, top): Pixel, height: f64) -> f64 {
+    let (bottom, right) = (top + height, x + 16.0);
+    let row = |fraction: f64| bottom - height * fraction;
+    for step in 0..=LEVELS as i32 {
+        let fraction = f64::from(step) / LEVELS;
         let (above, below) = ((fraction + 0.5 / LEVELS).min(1.0), (fraction - 0.5 / LEVELS).max(0.0));
-        let area = Rect { left: x, top: row(above), right, bottom: (row(below) + units(0.5)).min(bottom) };
-        canvas.rect(area, sequential(fraction).filled())?;
+        let area = Rect { left: x, top: row(above), right, bottom: row(below) };
+        sheet.tiles(&level(fraction), &Path::default().rect(area));
     }
-    canvas.rect(Rect { left: x, top, right, bottom }, stroke(GREY, 0.5))?;
+    sheet.rect("thin sg", Rect { left: x, top, right, bottom });
     for tick in &axis.major {
         let y = row(axis.fraction(tick.at));
-        canvas.line(vec![(right, y), (right + units(4.0), y)], stroke(INK, 1.0))?;
-        canvas.text(&tick.label, (right + units(7.0), y), 12.0, INK, LEFT)?;
+        sheet.line("axis", &[(right, y), (right + 4.0, y)]);
+        sheet.text("fi", &tick.label, (right + 7.0, y), 12.0, Anchor::Start);
     }
-    Ok(bottom + units(20.0))
+    bottom + STEP
 }
 
 #[cfg(test)]
@@ -192,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_sequential_palette_darkens_all_the_way() {
-        let light = |RGBColor(r, g, b): RGBColor| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
+        let light = |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
         let steps: Vec<f64> = (0..=48).map(|i| light(sequential(f64::from(i) / 48.0))).collect();
         assert!(steps.windows(2).all(|pair| pair[1] < pair[0]), "{steps:?}");
     }
@@ -201,14 +189,14 @@ mod tests {
     fn on_a_log_axis_cells_have_equal_ratios() {
         let axis = Axis::log("x").with_range(1.0, 100.0);
         let (map, _) = AxisMap::new(&axis, &[], &[]).expect("a proper range");
-        let middle = edges(&map, [1.0, 100.0], 2, |m| (m * 1000.0).round() as i32);
-        assert_eq!(middle, Some(vec![0, 1000, 2000]));
+        let middle = edges(&map, [1.0, 100.0], 2, |m| 1000.0 * m);
+        assert_eq!(middle, Some(vec![0.0, 1000.0, 2000.0]));
     }
 
     #[test]
     fn values_without_a_colour_are_grey_not_extreme() {
         let palette = Palette::Sequential { label: String::new(), scale: Scale::Log };
-        let colors = colors(&cells(vec![Some(1.0), Some(10.0), Some(-1.0), None], palette));
-        assert_eq!(colors, [sequential(0.0), sequential(1.0), EMPTY, EMPTY]);
+        let looks = looks(&cells(vec![Some(1.0), Some(10.0), Some(-1.0), None], palette));
+        assert_eq!(looks, [level(0.0), level(1.0), EMPTY.to_owned(), EMPTY.to_owned()]);
     }
 }

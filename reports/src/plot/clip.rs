@@ -1,8 +1,8 @@
 //! Lines cut at the frame, in the axes' own mapped coordinates (logarithms on a logarithmic axis).
 //!
-//! The drawing library moves a point outside the frame onto its edge, which bends the slope of the last segment.
-//! Here a segment is cut where it leaves the frame (Liang and Barsky, "A new concept and method for line clipping",
-//! ACM Transactions on Graphics 3 (1984) 1-22), so that what is left has the slope it had.
+//! A point moved onto the edge of the frame would bend the slope of the last segment. Here a segment is cut where it
+//! leaves the frame (Liang and Barsky, "A new concept and method for line clipping", ACM Transactions on Graphics 3 (1984)
+//! 1-22), so that what is left has the slope it had.
 
 /// A point in mapped coordinates.
 pub(super) type Point = [f64; 2];

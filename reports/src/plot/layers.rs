@@ -1,142 +1,129 @@
 //! What lies inside the frame: bands, lines, points, failed runs.
 
-use super::canvas::{Canvas, Drawn, GREY, INK, Pixel, Rect, palette, stroke, units};
-use super::clip::{Point, clip_line, clip_segment};
-use super::markers;
-use crate::{AxisName, Figure, Layer, Line, Marker, Series};
-use plotters::prelude::*;
+use super::clip::clip_segment;
+use super::frame::{Frame, along};
+use super::overlap::{self, Tracks};
+use super::sheet::{Anchor, Path, Pixel, Sheet};
+use super::style::{COLORS, fill, stroke};
+use super::text::text_width;
+use super::{cells, markers};
+use crate::{Figure, Layer, Line, Marker, Series};
 
-/// Everything but the maps (below) and the words (above), back to front.
-pub(super) fn draw(canvas: &Canvas<'_>, figure: &Figure) -> Drawn {
+/// Everything but the words, back to front.
+pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, figure: &Figure) {
+    for layer in &figure.layers {
+        if let Layer::Cells(cells) = layer {
+            cells::draw(sheet, frame, cells);
+        }
+    }
     for layer in &figure.layers {
         match layer {
-            Layer::Floor { y, .. } => floor(canvas, *y)?,
-            Layer::Band { axis, from, to, .. } => band(canvas, *axis, [*from, *to])?,
+            Layer::Floor { y, .. } => {
+                if let Some(area) = frame.below(*y) {
+                    sheet.rect("floor", area);
+                    sheet.line("edge sg", &[(area.left, area.top), (area.right, area.top)]);
+                }
+            }
+            Layer::Band { axis, from, to, .. } => {
+                if let Some(area) = frame.stripe(*axis, [*from, *to]) {
+                    sheet.rect("band", area);
+                }
+            }
             _ => {}
         }
     }
     for layer in &figure.layers {
         match layer {
-            Layer::Guide { axis, at, .. } => guide(canvas, *axis, *at)?,
-            Layer::Curve { points, color, .. } => curve(canvas, points, color.map_or(INK, palette))?,
+            Layer::Guide { axis, at, .. } => {
+                if let Some(ends) = frame.guide(*axis, *at) {
+                    sheet.line("guide sg", &ends);
+                }
+            }
+            Layer::Curve { points, .. } => sheet.path("halo", &path_of(&frame.visible(points))),
             _ => {}
         }
     }
-    let series = || figure.layers.iter().filter_map(|layer| if let Layer::Series(s) = layer { Some(s) } else { None });
-    for one in series() {
-        line(canvas, one)?;
-    }
-    for one in series() {
-        points(canvas, one)?;
-    }
-    failed(canvas, &series().collect::<Vec<_>>())
-}
-
-/// The visible pieces of a line through data points, in units of the sheet.
-pub(super) fn visible(canvas: &Canvas<'_>, points: &[Point]) -> Vec<Vec<Pixel>> {
-    let mapped: Vec<_> = points.iter().map(|&p| canvas.frame.mapped(p)).collect();
-    let pieces = clip_line(&mapped, canvas.frame.window());
-    pieces.into_iter().map(|piece| piece.into_iter().map(|p| canvas.frame.pixel(p)).collect()).collect()
-}
-
-/// The data points inside the frame, in units of the sheet.
-pub(super) fn shown(canvas: &Canvas<'_>, points: &[Point]) -> Vec<Pixel> {
-    let window = canvas.frame.window();
-    let inside = points.iter().filter_map(|&p| canvas.frame.mapped(p)).filter(|&p| window.contains(p));
-    inside.map(|p| canvas.frame.pixel(p)).collect()
-}
-
-/// The rectangle between two values of an axis, cut at the frame; `None` if nothing of it is in sight.
-pub(super) fn stripe(canvas: &Canvas<'_>, axis: AxisName, [from, to]: [f64; 2]) -> Option<Rect> {
-    let frame = &canvas.frame;
-    let map = match axis {
-        AxisName::X => &frame.x,
-        AxisName::Y => &frame.y,
-    };
-    // An end without a place on the axis (zero on a log axis, infinity) means: as far as the frame goes.
-    let low = map.map_value(from.min(to)).unwrap_or(map.low).max(map.low);
-    let high = map.map_value(from.max(to)).unwrap_or(map.high).min(map.high);
-    (low < high).then(|| match axis {
-        AxisName::X => Rect { left: frame.column(low), right: frame.column(high), ..frame.area },
-        AxisName::Y => Rect { top: frame.row(high), bottom: frame.row(low), ..frame.area },
-    })
-}
-
-fn floor(canvas: &Canvas<'_>, y: f64) -> Drawn {
-    let Some(area) = canvas.frame.y.map_value(y).and_then(|_| stripe(canvas, AxisName::Y, [f64::NEG_INFINITY, y]))
-    else {
-        return Ok(());
-    };
-    canvas.rect(area, RGBColor(110, 110, 110).mix(0.13).filled())?;
-    canvas.line(vec![(area.left, area.top), (area.right, area.top)], stroke(GREY.mix(0.6), 0.75))
-}
-
-fn band(canvas: &Canvas<'_>, axis: AxisName, ends: [f64; 2]) -> Drawn {
-    stripe(canvas, axis, ends).map_or(Ok(()), |area| canvas.rect(area, RGBColor(0x00, 0x72, 0xB2).mix(0.09).filled()))
-}
-
-fn guide(canvas: &Canvas<'_>, axis: AxisName, at: f64) -> Drawn {
-    guide_line(canvas, axis, at).map_or(Ok(()), |ends| canvas.dashed(ends.to_vec(), 2.0, 3.0, stroke(GREY, 1.1)))
-}
-
-/// The ends of a guide, if its value is in sight.
-pub(super) fn guide_line(canvas: &Canvas<'_>, axis: AxisName, at: f64) -> Option<[Pixel; 2]> {
-    let frame = &canvas.frame;
-    let (map, vertical) = match axis {
-        AxisName::X => (&frame.x, true),
-        AxisName::Y => (&frame.y, false),
-    };
-    let m = map.map_value(at).filter(|m| map.low <= *m && *m <= map.high)?;
-    Some(if vertical {
-        [(frame.column(m), frame.area.bottom), (frame.column(m), frame.area.top)]
-    } else {
-        [(frame.area.left, frame.row(m)), (frame.area.right, frame.row(m))]
-    })
-}
-
-fn curve(canvas: &Canvas<'_>, points: &[Point], color: RGBColor) -> Drawn {
-    for piece in visible(canvas, points) {
-        canvas.line(piece.clone(), stroke(WHITE.mix(0.75), 4.0))?;
-        canvas.dashed(piece, 7.0, 4.0, stroke(color, 1.4))?;
-    }
-    Ok(())
-}
-
-fn line(canvas: &Canvas<'_>, series: &Series) -> Drawn {
-    let color = palette(series.color);
-    let style = stroke(color, 1.8);
-    for piece in visible(canvas, &series.points) {
-        match series.line {
-            Some(Line::Solid) => canvas.line(piece, style)?,
-            Some(Line::Dashed) => canvas.dashed(piece, 8.0, 4.0, style)?,
-            Some(Line::Dotted) => canvas.dashed(piece, 2.0, 3.0, style)?,
-            None => {}
+    let series: Vec<&Series> = series(figure).collect();
+    lines(sheet, frame, &series);
+    for layer in &figure.layers {
+        // Theory lies on the measured line, whose colour shows between its dashes.
+        if let Layer::Curve { points, color, .. } = layer {
+            sheet.path(format_args!("curve {}", ink_or(*color)), &path_of(&frame.visible(points)));
         }
     }
-    whiskers(canvas, series, color)
+    points(sheet, frame, &series);
+    failed(sheet, frame, &series);
 }
 
-fn whiskers(canvas: &Canvas<'_>, series: &Series, color: RGBColor) -> Drawn {
-    let frame = &canvas.frame;
+pub(super) fn series(figure: &Figure) -> impl Iterator<Item = &Series> {
+    figure.layers.iter().filter_map(|layer| if let Layer::Series(series) = layer { Some(series) } else { None })
+}
+
+/// The class of a line in a palette colour, or in dark ink.
+pub(super) fn ink_or(color: Option<usize>) -> String {
+    color.map_or_else(|| "si".to_owned(), stroke)
+}
+
+/// Colour and dashes of a line. A second and third round through the palette are told apart by their dashes.
+pub(super) fn look(color: usize, line: Line) -> String {
+    let dashes = match (line, color / COLORS) {
+        (Line::Dotted, _) => " dotted",
+        (Line::Dashed, _) | (Line::Solid, 1) => " dashed",
+        (Line::Solid, 0) => "",
+        (Line::Solid, _) => " mixed",
+    };
+    format!("line {}{dashes}", stroke(color))
+}
+
+fn path_of(pieces: &[Vec<Pixel>]) -> Path {
+    pieces.iter().fold(Path::default(), |path, piece| path.line(piece))
+}
+
+/// The lines of all series; where one lies on earlier ones it is drawn in dashes, and they show between.
+fn lines(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
+    let visible: Vec<_> = series.iter().map(|s| s.line.map_or_else(Vec::new, |_| frame.visible(&s.points))).collect();
+    let mut tracks = Tracks::default();
+    for (i, pieces) in visible.iter().enumerate() {
+        tracks.add(i, pieces.iter().flat_map(|piece| along(piece, 1.0)));
+    }
+    for (i, (one, pieces)) in series.iter().zip(&visible).enumerate() {
+        let Some(line) = one.line else { continue };
+        let look = look(one.color, line);
+        // A line with dashes of its own lets the lower ones show already.
+        if look.contains(' ') && !look.ends_with(&stroke(one.color)) {
+            sheet.path(&look, &path_of(pieces));
+            continue;
+        }
+        let mut paths = [const { None }; 4];
+        for (under, part) in pieces.iter().flat_map(|piece| overlap::parts(&tracks, i, piece)) {
+            let path: &mut Option<Path> = &mut paths[under.min(3)];
+            *path = Some(path.take().unwrap_or_default().line(&part));
+        }
+        for (under, path) in paths.into_iter().enumerate().filter_map(|(under, path)| Some((under, path?))) {
+            let over = if under == 0 { String::new() } else { format!(" over{under}") };
+            sheet.path(format_args!("{look}{over}"), &path);
+        }
+    }
+    for one in series {
+        sheet.path(format_args!("whisker {}", stroke(one.color)), &whiskers(frame, one));
+    }
+}
+
+fn whiskers(frame: &Frame, series: &Series) -> Path {
+    let mut path = Path::default();
     for ([x, _], [low, high]) in series.points.iter().zip(&series.whiskers) {
         // A whisker that reaches zero on a log axis reaches the edge of the frame.
-        let bottom = if *low <= 0.0 && high.is_finite() {
-            frame.y.map_value(*low).or(Some(frame.y.low))
-        } else {
-            frame.y.map_value(*low)
-        };
+        let bottom = frame.y.map_value(*low).or((*low <= 0.0 && high.is_finite()).then_some(frame.y.low));
         let ends = (frame.x.map_value(*x), bottom, frame.y.map_value(*high));
         let (Some(x), Some(low), Some(high)) = ends else { continue };
         let Some([a, b]) = clip_segment([x, low], [x, high], frame.window()) else { continue };
-        let (foot, head) = (frame.pixel(a), frame.pixel(b));
-        canvas.line(vec![foot, head], stroke(color, 1.2))?;
-        for ((cx, cy), cut) in [(foot, a[1] != low), (head, b[1] != high)] {
-            if !cut {
-                canvas.line(vec![(cx - units(3.0), cy), (cx + units(3.0), cy)], stroke(color, 1.2))?;
-            }
+        path = path.line(&[frame.pixel(a), frame.pixel(b)]);
+        for (end, cut) in [(a, a[1] != low), (b, b[1] != high)] {
+            let (x, y) = frame.pixel(end);
+            path = if cut { path } else { path.line(&[(x - 3.0, y), (x + 3.0, y)]) };
         }
     }
-    Ok(())
+    path
 }
 
 /// The marker a series shows its points with: one with neither marker nor line would show nothing.
@@ -144,11 +131,19 @@ pub(super) fn marker_of(series: &Series) -> Option<Marker> {
     series.marker.or_else(|| series.line.is_none().then(|| Marker::of_color(series.color)))
 }
 
-fn points(canvas: &Canvas<'_>, series: &Series) -> Drawn {
-    let Some(marker) = marker_of(series) else { return Ok(()) };
-    shown(canvas, &series.points)
-        .into_iter()
-        .try_for_each(|at| markers::draw(canvas, marker, at, palette(series.color)))
+/// The marks of all series; one that later ones lie on is larger, and its rim shows around them.
+fn points(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
+    let shown: Vec<_> = series.iter().map(|s| marker_of(s).map(|marker| (marker, frame.shown(&s.points)))).collect();
+    let mut tracks = Tracks::default();
+    for (i, places) in shown.iter().enumerate().filter_map(|(i, one)| Some((i, &one.as_ref()?.1))) {
+        tracks.add(i, places.iter().copied());
+    }
+    for (i, one) in shown.iter().enumerate() {
+        let Some((marker, places)) = one else { continue };
+        let scale = |at: Pixel| 1.0 + 0.45 * tracks.over(i, at).min(3) as f64;
+        let path = places.iter().fold(Path::default(), |path, &at| markers::add(path, *marker, at, scale(at)));
+        sheet.path(format_args!("mark {}", fill(series[i].color)), &path);
+    }
 }
 
 /// Distance between two crosses set one under the other, and of the first from the upper edge, in CSS pixels.
@@ -156,33 +151,30 @@ const FAILED_STEP: f64 = 12.0;
 const FAILED_EDGE: f64 = 9.0;
 
 /// Where the crosses of failed runs stand: along the upper edge, one under the other where they would meet.
-pub(super) fn failed_places(canvas: &Canvas<'_>, series: &[&Series]) -> Vec<(Pixel, usize)> {
-    let frame = &canvas.frame;
+pub(super) fn failed_places(frame: &Frame, series: &[&Series]) -> Vec<(Pixel, usize)> {
     let mut places: Vec<(Pixel, usize)> = Vec::new();
-    for one in series {
-        for &x in &one.failed {
-            // A failed run is never hidden: one that lies outside the frame is shown at its edge.
-            let mapped = frame.x.map_value(x).unwrap_or(if x <= 0.0 { frame.x.low } else { frame.x.high });
-            let column = frame.column(mapped.clamp(frame.x.low, frame.x.high));
-            let free = |row: i32| !places.iter().any(|((c, r), _)| (c - column).abs() < units(9.0) && *r == row);
-            let rows = (0..).map(|i| frame.area.top + units(FAILED_EDGE + FAILED_STEP * f64::from(i)));
-            let row = rows.take_while(|&row| row < frame.area.bottom).find(|&row| free(row));
-            places.push(((column, row.unwrap_or(frame.area.top + units(FAILED_EDGE))), one.color));
-        }
+    let all = series.iter().flat_map(|one| one.failed.iter().map(|&x| (x, one.color)));
+    for (x, color) in all {
+        // A failed run is never hidden: one that lies outside the frame is shown at its edge.
+        let mapped = frame.x.map_value(x).unwrap_or(if x <= 0.0 { frame.x.low } else { frame.x.high });
+        let column = frame.column(mapped.clamp(frame.x.low, frame.x.high));
+        let free = |row: f64| !places.iter().any(|((c, r), _)| (c - column).abs() < 9.0 && *r == row);
+        let rows = (0..).map(|i| frame.area.top + FAILED_EDGE + FAILED_STEP * f64::from(i));
+        let row = rows.take_while(|&row| row < frame.area.bottom).find(|&row| free(row));
+        places.push(((column, row.unwrap_or(frame.area.top + FAILED_EDGE)), color));
     }
     places
 }
 
-fn failed(canvas: &Canvas<'_>, series: &[&Series]) -> Drawn {
-    let places = failed_places(canvas, series);
-    places.iter().try_for_each(|&(at, color)| markers::draw_failed(canvas, at, palette(color)))?;
-    if places.is_empty() {
-        return Ok(());
+fn failed(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
+    let places = failed_places(frame, series);
+    for &(at, color) in &places {
+        sheet.path(format_args!("failed {}", stroke(color)), &markers::add_failed(Path::default(), at));
     }
-    let area = canvas.frame.area;
-    let (x, y) = (area.right, area.top - units(9.0));
-    let words = "run failed";
-    let mark = x - units(super::canvas::text_width(words, 11.5) + 9.0);
-    markers::draw_failed(canvas, (mark, y), GREY)?;
-    canvas.text(words, (x, y), 11.5, GREY, super::canvas::RIGHT)
+    if !places.is_empty() {
+        let (words, size, at) = ("run failed", 11.5, (frame.area.right, frame.area.top - 9.0));
+        sheet.text("fg", words, at, size, Anchor::End);
+        let mark = (at.0 - text_width(words, size) - 9.0, at.1);
+        sheet.path("failed sg", &markers::add_failed(Path::default(), mark));
+    }
 }

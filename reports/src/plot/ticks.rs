@@ -12,7 +12,7 @@ pub(super) struct Tick {
 /// At most about `most` labelled ticks between the mapped ends, and the unlabelled ones between them.
 pub(super) fn ticks(scale: Scale, low: f64, high: f64, most: usize) -> (Vec<Tick>, Vec<f64>) {
     match scale {
-        Scale::Linear => (linear(low, high, most), Vec::new()),
+        Scale::Linear => (linear(low, high, most, 0), Vec::new()),
         Scale::Log => log(low, high, most),
     }
 }
@@ -34,16 +34,17 @@ fn nice_step(span: f64, most: usize) -> (f64, i32) {
     *choices.iter().find(fits).unwrap_or(&(1.0, exponent + 1))
 }
 
-fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
+/// Evenly spaced ticks from `low` to `high`; the labels name the values times 10^shift.
+fn linear(low: f64, high: f64, most: usize, shift: i32) -> Vec<Tick> {
     let (digit, exponent) = nice_step(high - low, most);
     let step = digit * power_of_ten(exponent);
-    let largest = low.abs().max(high.abs()).log10().floor() as i32;
-    let plain = (-4..=5).contains(&largest) && exponent >= -5;
+    let (unit, largest) = (exponent + shift, low.abs().max(high.abs()).log10().floor() as i32 + shift);
+    let plain = (-4..=5).contains(&largest) && unit >= -5;
     // `multiple * digit` is an integer: the label is made from it and the exponent, not from a rounded product.
     let label = |multiple: f64| match multiple * digit {
         0.0 => "0".to_owned(),
-        units if plain => fixed(units * power_of_ten(exponent), -exponent),
-        units => scientific(units, exponent, largest),
+        units if plain => fixed(units * power_of_ten(unit), -unit),
+        units => scientific(units, unit, largest),
     };
     multiples(low, high, step).into_iter().map(|k| Tick { at: k * step, label: label(k) }).collect()
 }
@@ -84,8 +85,10 @@ fn within_a_decade(low: f64, high: f64, most: usize) -> (Vec<Tick>, Vec<f64>) {
         }
     }
     if major.len() < 2 {
-        let even = linear(10_f64.powf(low), 10_f64.powf(high), most.min(6));
-        major = even.into_iter().map(|tick| Tick { at: tick.at.log10(), ..tick }).collect();
+        // Ten to the power of the ends may overflow or vanish; less whole decades it does not.
+        let [from, to] = [low, high].map(|end| 10_f64.powf(end - f64::from(decade)));
+        let even = linear(from, to, most.min(6), decade);
+        major = even.into_iter().map(|tick| Tick { at: f64::from(decade) + tick.at.log10(), ..tick }).collect();
     }
     (major, Vec::new())
 }
@@ -154,23 +157,33 @@ mod tests {
         assert_eq!(labels(&log(2.0_f64.log10(), 2.5_f64.log10(), 6).0), ["2.0", "2.1", "2.2", "2.3", "2.4", "2.5"]);
     }
 
+    // Ten to the power of -324 is zero as a double, and of 308.3 infinite.
+    #[test]
+    fn the_ends_of_the_doubles_are_labelled_too() {
+        assert_eq!(
+            labels(&log(-323.35, -323.25, 6).0),
+            ["4.6×10⁻³²⁴", "4.8×10⁻³²⁴", "5.0×10⁻³²⁴", "5.2×10⁻³²⁴", "5.4×10⁻³²⁴", "5.6×10⁻³²⁴"]
+        );
+        assert_eq!(labels(&log(308.21, 308.31, 4).0), ["1.8×10³⁰⁸", "2.0×10³⁰⁸"]);
+    }
+
     #[test]
     fn linear_labels_carry_the_digits_their_step_needs() {
         assert_eq!(
-            labels(&linear(-0.5, 1.0, 5)),
+            labels(&linear(-0.5, 1.0, 5, 0)),
             ["−0.5", "0.0", "0.5", "1.0"].map(|l| if l == "0.0" { "0" } else { l })
         );
-        assert_eq!(labels(&linear(0.0, 2e-7, 4)), ["0", "0.5×10⁻⁷", "1.0×10⁻⁷", "1.5×10⁻⁷", "2.0×10⁻⁷"]);
-        assert_eq!(labels(&linear(0.0, 100.0, 6)), ["0", "20", "40", "60", "80", "100"]);
+        assert_eq!(labels(&linear(0.0, 2e-7, 4, 0)), ["0", "0.5×10⁻⁷", "1.0×10⁻⁷", "1.5×10⁻⁷", "2.0×10⁻⁷"]);
+        assert_eq!(labels(&linear(0.0, 100.0, 6, 0)), ["0", "20", "40", "60", "80", "100"]);
         assert_eq!(
-            labels(&linear(0.0, 3e6, 4)),
+            labels(&linear(0.0, 3e6, 4, 0)),
             ["0", "1×10⁶", "2×10⁶", "3×10⁶"].map(|l| if l == "1×10⁶" { "10⁶" } else { l })
         );
     }
 
     #[test]
     fn a_range_of_one_rounding_error_gives_a_finite_number_of_ticks() {
-        assert!(linear(1.0, 1.0 + f64::EPSILON, 8).len() <= 1001);
+        assert!(linear(1.0, 1.0 + f64::EPSILON, 8, 0).len() <= 1001);
         assert!(multiples(5.0, 4.0, 1.0).is_empty());
     }
 }

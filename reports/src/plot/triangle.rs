@@ -1,17 +1,21 @@
 //! Slope triangles: set beside the data of their slope, over nothing that is already there.
 
-use super::canvas::{Canvas, Drawn, INK, Pixel, Rect, UNITS, stroke, units};
-use super::place::{SIZE, Taken};
-use crate::{Figure, Layer};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::frame::Frame;
+use super::layers;
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet};
+use super::taken::Taken;
+use crate::{Figure, Layer, Scale};
+
+/// Size of the number.
+const SIZE: f64 = 12.0;
 
 /// A slope triangle on the sheet: `start` is the end of the hypotenuse with the smaller x, and the right angle lies
 /// below the hypotenuse (at the right) or above it (at the left).
 #[derive(Clone, Copy)]
 struct Triangle {
     start: Pixel,
-    width: i32,
-    height: i32,
+    width: f64,
+    height: f64,
     below: bool,
 }
 
@@ -25,66 +29,63 @@ impl Triangle {
     /// Middle of the number beside the upright leg.
     fn number(&self) -> Pixel {
         let (x, y) = self.start;
-        let x = if self.below { x + self.width + units(9.0) } else { x - units(9.0) };
-        (x, y - self.height / 2)
+        let x = if self.below { x + self.width + 9.0 } else { x - 9.0 };
+        (x, y - self.height / 2.0)
     }
 
     fn bounds(&self) -> Rect {
         let (x, y) = self.start;
-        let (left, right) = if self.below { (0, units(18.0)) } else { (units(18.0), 0) };
+        let (left, right) = if self.below { (0.0, 18.0) } else { (18.0, 0.0) };
         let (top, bottom) = ((y - self.height).min(y), y.max(y - self.height));
         Rect { left: x - left, top, right: x + self.width + right, bottom }
     }
 
     /// Whether a point lies in the triangle, in its number or within a few pixels of either.
     fn touches(&self, (px, py): Pixel) -> bool {
-        let room = units(7.0);
+        let room = 7.0;
         let Rect { left, top, right, bottom } = self.bounds();
         if px < left - room || px > right + room || py < top - room || py > bottom + room {
             return false;
         }
         // Signed distance from the hypotenuse, positive on the side of the right angle.
-        let (dx, dy) = (f64::from(px - self.start.0), f64::from(py - self.start.1));
-        let (w, h) = (f64::from(self.width), f64::from(-self.height));
+        let (dx, dy) = (px - self.start.0, py - self.start.1);
+        let (w, h) = (self.width, -self.height);
         let distance = (dy * w - dx * h) / w.hypot(h) * if self.below { 1.0 } else { -1.0 };
-        distance > -f64::from(room)
+        distance > -room
     }
 }
 
-/// Draws the triangle beside the data whose slope is nearest to the order, or anywhere free.
-pub(super) fn draw(canvas: &Canvas<'_>, figure: &Figure, order: f64, taken: &mut Taken) -> Drawn {
-    let frame = &canvas.frame;
-    let per_decade_x = f64::from(frame.area.right - frame.area.left) / (frame.x.high - frame.x.low);
-    let per_decade_y = f64::from(frame.area.bottom - frame.area.top) / (frame.y.high - frame.y.low);
+/// Draws the triangles of a figure, if both its axes are logarithmic.
+pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, figure: &Figure, taken: &mut Taken) {
+    if (frame.x.scale, frame.y.scale) != (Scale::Log, Scale::Log) {
+        return;
+    }
+    for layer in &figure.layers {
+        if let Layer::SlopeTriangle { order } = layer {
+            one(sheet, frame, figure, *order, taken);
+        }
+    }
+}
+
+/// Draws a triangle beside the data whose slope is nearest to the order, or anywhere free.
+fn one(sheet: &mut Sheet, frame: &Frame, figure: &Figure, order: f64, taken: &mut Taken) {
+    let per_decade_x = frame.area.width() / (frame.x.high - frame.x.low);
+    let per_decade_y = frame.area.height() / (frame.y.high - frame.y.low);
     let rise = order * per_decade_y / per_decade_x;
     if !(rise.is_finite() && rise != 0.0) {
-        return Ok(());
+        return;
     }
     // As wide as 52 CSS pixels, unless it would then be higher than 64.
-    let width = (52.0 * UNITS).min(64.0 * UNITS / rise.abs());
-    let (width, height) = (width.round() as i32, (width * rise).round() as i32);
-    let cost = |t: &Triangle| {
-        let over = taken.points.iter().filter(|&&p| t.touches(p)).count();
-        over + 50 * taken.boxes.iter().filter(|other| other.overlaps(&t.bounds())).count()
-    };
-    let room = Rect {
-        left: frame.area.left + 8,
-        top: frame.area.top + units(20.0),
-        right: frame.area.right - 8,
-        bottom: frame.area.bottom - 8,
-    };
-    let fits = candidates(canvas, figure, order, width, height).into_iter().filter(|t| t.bounds().inside(&room));
-    let Some(best) = fits.min_by_key(cost) else { return Ok(()) };
-    let [a, b, c] = best.corners();
-    canvas.line(vec![a, b, c, a, b], stroke(INK, 1.0))?;
-    let bounds = best.bounds();
-    taken.boxes.push(Rect {
-        left: bounds.left - 8,
-        right: bounds.right + 8,
-        top: bounds.top - 24,
-        bottom: bounds.bottom + 24,
-    });
-    canvas.text(&number(order), best.number(), SIZE, INK, Pos::new(HPos::Center, VPos::Center))
+    let width = 52.0_f64.min(64.0 / rise.abs());
+    let size = (width, width * rise);
+    let area = frame.area;
+    let room = Rect { left: area.left + 2.0, top: area.top + 20.0, right: area.right - 2.0, bottom: area.bottom - 2.0 };
+    let fits = candidates(frame, figure, order, size).into_iter().filter(|t| t.bounds().inside(&room));
+    let Some(best) = fits.min_by_key(|t| taken.cost(&t.bounds(), |p| t.touches(p))) else { return };
+    sheet.path("axis", &Path::default().polygon(&best.corners()));
+    let Rect { left, top, right, bottom } = best.bounds();
+    taken.boxes.push(Rect { left: left - 2.0, right: right + 2.0, top: top - 6.0, bottom: bottom + 6.0 });
+    sheet.text("fi", &number(order), best.number(), SIZE, Anchor::Middle);
 }
 
 fn number(order: f64) -> String {
@@ -93,36 +94,31 @@ fn number(order: f64) -> String {
 }
 
 /// Triangles to choose from, the most wanted first: near segments of about this slope, then all over the frame.
-fn candidates(canvas: &Canvas<'_>, figure: &Figure, order: f64, width: i32, height: i32) -> Vec<Triangle> {
+fn candidates(frame: &Frame, figure: &Figure, order: f64, (width, height): (f64, f64)) -> Vec<Triangle> {
     let mut spots: Vec<Triangle> = Vec::new();
-    let length = f64::from(width).hypot(f64::from(height));
+    let length = width.hypot(height);
     for away in [11.0, 16.0, 22.0, 30.0, 40.0] {
-        for middle in steep(canvas, figure, order) {
+        for middle in steep(frame, figure, order) {
             for below in [true, false] {
-                let side = if below { 1.0 } else { -1.0 } * away * UNITS / length;
-                let x = f64::from(middle.0 - width / 2) + side * f64::from(height);
-                let y = f64::from(middle.1 + height / 2) + side * f64::from(width);
-                spots.push(Triangle { start: (x.round() as i32, y.round() as i32), width, height, below });
+                let side = if below { 1.0 } else { -1.0 } * away / length;
+                let x = middle.0 - width / 2.0 + side * height;
+                let y = middle.1 + height / 2.0 + side * width;
+                spots.push(Triangle { start: (x, y), width, height, below });
             }
         }
     }
-    let area = canvas.frame.area;
-    let grid =
-        |i: i32, j: i32| (area.left + (area.right - area.left) * i / 16, area.top + (area.bottom - area.top) * j / 16);
-    spots.extend(
-        (1..16)
-            .rev()
-            .flat_map(|j| (1..16).rev().map(move |i| Triangle { start: grid(i, j), width, height, below: true })),
-    );
+    let area = frame.area;
+    let place = |part: i32, from: f64, length: f64| from + length * f64::from(part) / 16.0;
+    let grid = |i, j| (place(i, area.left, area.width()), place(j, area.top, area.height()));
+    let row = |j| (1..16).rev().map(move |i| Triangle { start: grid(i, j), width, height, below: true });
+    spots.extend((1..16).rev().flat_map(row));
     spots
 }
 
 /// Middles of the segments whose slope is that of the order, middle ones of a series first.
-fn steep(canvas: &Canvas<'_>, figure: &Figure, order: f64) -> Vec<Pixel> {
-    let frame = &canvas.frame;
+fn steep(frame: &Frame, figure: &Figure, order: f64) -> Vec<Pixel> {
     let mut found = Vec::new();
-    for layer in &figure.layers {
-        let Layer::Series(series) = layer else { continue };
+    for series in layers::series(figure) {
         let mapped: Vec<_> = series.points.iter().map(|&p| frame.mapped(p)).collect();
         let middles = mapped.windows(2).filter_map(|pair| {
             let (a, b) = (pair[0]?, pair[1]?);
@@ -131,9 +127,8 @@ fn steep(canvas: &Canvas<'_>, figure: &Figure, order: f64) -> Vec<Pixel> {
             ((slope - order).abs() < 0.2 && frame.window().contains(middle)).then(|| frame.pixel(middle))
         });
         let middles: Vec<Pixel> = middles.collect();
-        let centre = middles.len() as i64 / 2;
-        let ranked = middles.into_iter().enumerate().map(|(i, at)| ((i as i64 - centre).abs(), at));
-        found.extend(ranked);
+        let centre = middles.len() / 2;
+        found.extend(middles.into_iter().enumerate().map(|(i, at)| (i.abs_diff(centre), at)));
     }
     found.sort_by_key(|&(rank, _)| rank);
     found.into_iter().map(|(_, at)| at).collect()
@@ -145,11 +140,11 @@ mod tests {
 
     #[test]
     fn a_triangle_knows_what_lies_over_it() {
-        let t = Triangle { start: (1000, 1000), width: 200, height: 100, below: true };
-        assert!(t.touches((1150, 990)) && t.touches((1100, 940)) && t.touches((1236, 950)));
-        assert!(!t.touches((1050, 900)) && !t.touches((1400, 950)) && !t.touches((1100, 1100)));
+        let t = Triangle { start: (250.0, 250.0), width: 50.0, height: 25.0, below: true };
+        assert!(t.touches((287.5, 247.5)) && t.touches((275.0, 235.0)) && t.touches((309.0, 237.5)));
+        assert!(!t.touches((262.5, 225.0)) && !t.touches((350.0, 237.5)) && !t.touches((275.0, 275.0)));
         let above = Triangle { below: false, ..t };
-        assert!(above.touches((1050, 910)) && !above.touches((1150, 990)));
+        assert!(above.touches((262.5, 227.5)) && !above.touches((287.5, 247.5)));
     }
 
     #[test]

@@ -92,7 +92,7 @@ fn look<'a>(blocks: &'a [Block], claims: &mut Vec<&'a Claim>, drawn: &mut Vec<&'
     for block in blocks {
         match block {
             Block::Claims(made) => claims.extend(made),
-            Block::Figure { figure, .. } => drawn.push(&figure.id),
+            Block::Figure(figure) => drawn.push(&figure.id),
             Block::Group { blocks, .. } => look(blocks, claims, drawn),
             _ => {}
         }

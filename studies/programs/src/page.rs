@@ -97,9 +97,9 @@ pub(crate) fn by_scene(study: &str, blocks: Vec<Block>) -> Vec<Block> {
                 let table = Table { headers: headers.clone(), align: align.clone(), rows: rest };
                 common.extend((!table.rows.is_empty()).then_some(Block::Table { caption, table, csv }));
             }
-            Block::Figure { figure, svg } => match scene_of_figure(&figure.id) {
-                Some(scene) => give(scene, Block::Figure { figure, svg }),
-                None => common.push(Block::Figure { figure, svg }),
+            Block::Figure(figure) => match scene_of_figure(&figure.id) {
+                Some(scene) => give(scene, Block::Figure(figure)),
+                None => common.push(Block::Figure(figure)),
             },
             Block::Links { caption, files } => {
                 let scene = |(_, file): &(String, String)| {

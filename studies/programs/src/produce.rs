@@ -117,7 +117,7 @@ impl Source {
 fn by_plan(mut product: Product, plan: &Plan) -> Product {
     fn complete(block: &mut Block, plan: &Plan) {
         match block {
-            Block::Figure { figure, .. } => {
+            Block::Figure(figure) => {
                 let scene = figure.command.split_once("--scene ").map(|(_, scene)| scene);
                 let separator = if scene.is_none() && !figure.command.contains(" -- ") { " --" } else { "" };
                 let flags = plan.flags(scene);
@@ -146,10 +146,10 @@ pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, E
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
     let (mut blocks, mut linked) = (Vec::new(), Vec::new());
-    for (figure, svg, drawn) in drawn(S::figures(rows), format)? {
+    for (figure, drawn) in drawn(S::figures(rows), format)? {
         files.extend(drawn);
         if S::is_on_page(&figure) {
-            blocks.push(Block::Figure { figure, svg });
+            blocks.push(Block::Figure(figure));
         } else {
             linked.push((figure.title, format!("{}.{}", figure.id, format.ending())));
         }
@@ -166,20 +166,20 @@ pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, E
     Ok(Product { files, section, claims })
 }
 
-/// A figure, its drawing for the page, and its files.
-type Drawn = (Figure, String, Vec<(String, Vec<u8>)>);
+/// A figure and its files.
+type Drawn = (Figure, Vec<(String, Vec<u8>)>);
 
 fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
     let draw = |figure: Figure| {
         let svg = reports::svg(&figure)?;
         let mut files = Vec::new();
-        if format != Format::Png {
-            files.push((format!("{}.svg", figure.id), svg.clone().into_bytes()));
-        }
         if format != Format::Svg {
             files.push((format!("{}.png", figure.id), reports::png(&svg, &figure.id)?));
         }
-        Ok((figure, svg, files))
+        if format != Format::Png {
+            files.push((format!("{}.svg", figure.id), svg.into_bytes()));
+        }
+        Ok((figure, files))
     };
     figures.into_par_iter().map(draw).collect()
 }
@@ -192,13 +192,15 @@ pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, .. } = source.product::<S>()?;
-    write(&out, common, files, &source.manifest)?;
+    write(&out, S::ID, common, files, &source.manifest)?;
     Ok(Judged { claims, manifest: source.manifest })
 }
 
-/// Writes the files with plan and manifest, or of the files the charts alone.
+/// Writes the files with plan and manifest in place of those that this program wrote there before, or of the files the charts
+/// alone beside what is there.
 pub(crate) fn write(
     out: &OutputDir,
+    owner: &str,
     common: &Common,
     mut files: Vec<(String, Vec<u8>)>,
     manifest: &Manifest,
@@ -207,8 +209,9 @@ pub(crate) fn write(
     files.push((provenance::MANIFEST.to_owned(), manifest.to_json()?.into_bytes()));
     if common.figures_only {
         files.retain(|(name, _)| name.ends_with(".svg") || name.ends_with(".png"));
+        return Ok(out.write_all(&files)?);
     }
-    Ok(out.write_all(&files)?)
+    Ok(out.replace_all(owner, &files)?)
 }
 
 /// Makes the whole report and writes it.
@@ -232,6 +235,6 @@ pub fn report(common: &Common) -> Result<Judged, Error> {
     let scenes = plan.selection()?.scenes;
     let html = page::html(sections, &scenes, about)?;
     files.push(("index.html".to_owned(), html.into_bytes()));
-    write(&out, common, files, &source.manifest)?;
+    write(&out, REPORT, common, files, &source.manifest)?;
     Ok(Judged { claims, manifest: source.manifest })
 }

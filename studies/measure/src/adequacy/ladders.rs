@@ -225,7 +225,8 @@ fn translations() -> Vec<Ladder> {
     let start = Motion::<f64>::exact(&quadratic, 0.0);
     let fall = rung("no drag", false, Fall { gravity: [quadratic.gravity] }, start, Observation::particles);
     let full = rung(FULL, true, quadratic.clone(), start, Observation::particles);
-    let of_quadratic = ladder("quadratic-drag", scenes::boxed("quadratic-drag", quadratic), position, vec![fall, full]);
+    let of_quadratic =
+        ladder("quadratic-drag", scenes::boxed("quadratic-drag/fall", quadratic), position, vec![fall, full]);
     let start: State<Vector2<f64>> = Motion::<f64>::exact(&planet, 0.0);
     // The gravity of the place where the planet starts.
     let gravity = start.q * (-planet.mu / start.q.norm().powi(3));
@@ -242,5 +243,5 @@ fn pendulum(name: &'static str, scene: Pendulum, consistent: bool) -> Ladder {
         rung("small angle", consistent, model, start, Observation::angle),
         rung(FULL, true, scene.clone(), start, Observation::angle),
     ];
-    ladder(name, scenes::boxed(name, scene), Quantity::Attitude, rungs)
+    ladder(name, scenes::boxed("pendulum", scene), Quantity::Attitude, rungs)
 }

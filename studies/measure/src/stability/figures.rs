@@ -103,7 +103,8 @@ fn region(rows: &[Row], method: MethodId) -> Option<Figure> {
     let x = Axis::linear("Re h λ").with_range(left, right);
     let y = Axis::linear("Im h λ").with_range(low, high);
     let title = format!("y' = λ y: where one step of {} shrinks y", method.title());
-    Some(figure(&format!("region-{}", method.id()), title, caption, x, y, layers, "oscillator"))
+    let figure = figure(&format!("region-{}", method.id()), title, caption, x, y, layers, "oscillator");
+    Some(Figure { equal_axes: true, ..figure })
 }
 
 /// The curve |R(z)| = 1 from z = 0: along it R = e^(i phi), z follows by Newton's iteration from the last point.

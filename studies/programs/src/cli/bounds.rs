@@ -1,9 +1,8 @@
 //! The flags of the binary, and what they ask for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, ValueEnum};
-use reports::OutputDir;
 
 use super::{Ending, Words, threads, use_threads};
 use gate::known::Known;
@@ -116,7 +115,7 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
     let bounds = Bounds::read(&cli.bounds)?;
     if cli.update {
         let update = update::update(&bounds, cli.reason.as_deref(), cli.theory, &progress)?;
-        write(&cli.bounds, &read::write(&update.rows)?)?;
+        reports::files::write_file(&cli.bounds, read::write(&update.rows)?)?;
         return ending(update.diff(), update.kept.is_empty());
     }
     if cli.audit {
@@ -130,7 +129,7 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
     }
     let judged = bounds.check(&rows, &progress)?;
     if let Some(path) = &cli.junit {
-        write(path, &format::junit(&judged))?;
+        reports::files::write_file(path, format::junit(&judged))?;
     }
     let text = match cli.format {
         Format::Table => check::report(&judged),
@@ -156,11 +155,4 @@ fn chosen<'a>(cli: &Flags, bounds: &'a Bounds) -> Result<Vec<&'a Row>, Error> {
         return Err(Error::plan(cli.bounds.display().to_string(), message));
     }
     Ok(rows)
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Error> {
-    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    OutputDir::create(directory.unwrap_or(Path::new(".")))?.write(&name, text)?;
-    Ok(())
 }

@@ -39,7 +39,7 @@ pub fn run(common: &Common, count: usize, seed: u64) -> Result<Ending, Error> {
     let out = OutputDir::create(common.out(Ensemble::ID))?;
     let Product { files, section, claims } = ensemble(&mut selection, count, seed, common.format)?;
     let judged = Judged { claims, manifest: Manifest::of(&common.plan) };
-    produce::write(&out, common, files, &judged.manifest)?;
+    produce::write(&out, Ensemble::ID, common, files, &judged.manifest)?;
     Ending::of(common, &judged, |claims| {
         let tables: String = section.blocks.iter().flat_map(tables).collect();
         format!("{tables}{}", summary::verdicts(claims))

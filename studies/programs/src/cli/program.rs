@@ -148,7 +148,8 @@ fn of_studies<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending,
 pub fn start<F: Args>(words: Words, run: impl Fn(F) -> Result<Ending, Error>) -> ExitCode {
     let arguments: Vec<String> = std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect();
     color::choose(&arguments);
-    // Ctrl-C lets files that are being put in their places arrive. Without a handler it would still end the program.
+    // Ctrl-C, SIGTERM and SIGHUP let files that are being put in their places arrive. Without a handler they would still end the
+    // program.
     let _ = ctrlc::set_handler(|| reports::files::when_written(|| std::process::exit(130)));
     let ended = perform(&words, run).and_then(|ending| {
         print(&ending.text)?;

@@ -16,12 +16,15 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
 use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::elementary::{expm1, log1p};
+use crate::special::scaled::Scaled;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, ExpectedOrder, Theory};
 
@@ -41,12 +44,18 @@ scene_parameters! {
     }
 }
 
-/// The arc that the ball is on: the bounce before it, the time of that bounce, and the upward speed after it.
+/// The arc that the ball is on, in flights: the time 2 V / g from the first bounce to the next if nothing were lost.
 struct Arc {
-    bounces: u32,
-    from: fx128,
-    speed: fx128,
+    /// Bounces before it.
+    bounces: u64,
+    /// Time since the last of them, flights.
+    since: fx128,
+    /// e^n, the part of the speed V after the n-th bounce.
+    left: fx128,
 }
+
+/// Bounces that a run may have: the studies list each.
+const MOST_BOUNCES: f64 = 65_536.0;
 
 impl BouncingBall {
     /// A bounce leaves three quarters of the speed.
@@ -54,92 +63,148 @@ impl BouncingBall {
         BouncingBall { restitution: 0.75, ..Self::default() }
     }
 
-    fn impact_speed(&self) -> fx128 {
-        let v0 = fx128::lit(self.v0);
-        (v0 * v0 + fx128::lit(2.0) * fx128::lit(self.gravity) * fx128::lit(self.x0)).sqrt()
+    /// V = sqrt(v0^2 + 2 g x0), m/s.
+    fn impact(&self) -> Scaled {
+        let (v0, g, x0) = (Scaled::of(self.v0), Scaled::of(self.gravity), Scaled::of(self.x0));
+        let (fall, rise) = (g.times(x0).shifted(1).sqrt(), v0);
+        // sqrt(a^2 + b^2) in units of the larger.
+        let unit = if self.v0 == 0.0 { fall } else { fall.larger(rise) };
+        let ratio = |part: Scaled| part.over(unit).value();
+        let square = ratio(fall) * ratio(fall) + ratio(rise) * ratio(rise);
+        unit.magnitude().times(Scaled::of_wide(square.sqrt()))
     }
 
-    fn first_bounce(&self) -> fx128 {
-        (fx128::lit(self.v0) + self.impact_speed()) / fx128::lit(self.gravity)
+    fn impact_speed(&self) -> fx128 {
+        self.impact().value()
+    }
+
+    /// 2 V / g, s.
+    fn flight(&self) -> Scaled {
+        self.impact().over(Scaled::of(self.gravity)).shifted(1)
+    }
+
+    /// The first bounce in flights: (v0 + V) / (2 V), or g x0 / (V (V - v0)) for a ball thrown downwards.
+    fn first_flight(&self) -> fx128 {
+        let speed = self.impact();
+        let ratio = Scaled::of(self.v0).over(speed).value();
+        if self.v0 >= 0.0 {
+            return (fx128::ONE + ratio) * fx128::lit(0.5);
+        }
+        let fall = Scaled::of(self.gravity).times(Scaled::of(self.x0)).over(speed).over(speed).value();
+        fall / (fx128::ONE - ratio)
+    }
+
+    /// e (1 - e^n) / (1 - e): flights from the first bounce to the one n later.
+    fn flights(&self, n: fx128) -> fx128 {
+        let e = fx128::lit(self.restitution);
+        if self.restitution == 1.0 { n } else { -e * expm1(n * log1p(e - fx128::ONE)) / (fx128::ONE - e) }
     }
 
     /// When the ball has come to rest, s: infinite for e = 1.
     pub fn rest_s(&self) -> f64 {
-        let (v, e) = (self.impact_speed().to_f64(), self.restitution);
-        self.first_bounce().to_f64() + 2.0 * e * v / (self.gravity * (1.0 - e))
+        let e = fx128::lit(self.restitution);
+        if self.restitution == 1.0 {
+            return f64::INFINITY;
+        }
+        let flights = self.first_flight() + e / (fx128::ONE - e);
+        self.flight().times(Scaled::of_wide(flights)).value().to_f64()
     }
 
-    /// The arc at the time t, after the first bounce; none once the ball rests.
-    fn arc(&self, t: fx128) -> Option<Arc> {
-        let (g, e) = (fx128::lit(self.gravity), fx128::lit(self.restitution));
-        let (mut from, mut speed) = (self.first_bounce(), self.impact_speed() * e);
-        let mut bounces = 1;
+    /// The arc at the time `late` flights after the first bounce; none once the ball rests.
+    ///
+    /// n = ln(1 - late (1 - e) / e) / ln e, rounded down: no bounce is counted.
+    fn arc(&self, late: fx128) -> Option<Arc> {
+        let e = fx128::lit(self.restitution);
+        let loss = fx128::ONE - e;
         if self.restitution == 1.0 {
-            let flight = (speed + speed) / g;
-            let late = (t - from) / flight;
             let whole = (late - fx128::lit(0.5)).round();
-            return Some(Arc { bounces: 1 + whole.0 as u32, from: from + whole * flight, speed });
+            return Some(Arc { bounces: 1 + whole.to_f64() as u64, since: late - whole, left: e });
         }
-        if t.to_f64() >= self.rest_s() {
+        let remaining = fx128::ONE - late * loss / e;
+        if remaining.0 <= 0.0 {
             return None;
         }
-        while t > from + (speed + speed) / g && speed.0 > 0.0 {
-            from += (speed + speed) / g;
-            speed *= e;
-            bounces += 1;
+        let rate = log1p(-loss);
+        let mut whole = (log1p(-(late * loss / e)) / rate - fx128::lit(0.5)).round();
+        // Rounding may have taken it over a bounce.
+        if self.flights(whole) > late {
+            whole -= fx128::ONE;
+        } else if self.flights(whole + fx128::ONE) <= late {
+            whole += fx128::ONE;
         }
-        Some(Arc { bounces, from, speed })
+        let left = ((whole + fx128::ONE) * rate).exp();
+        Some(Arc { bounces: 1 + whole.to_f64() as u64, since: late - self.flights(whole), left })
+    }
+
+    /// Time after the first bounce in flights; negative before it.
+    fn lateness(&self, t: fx128) -> fx128 {
+        Scaled::of_wide(t).over(self.flight()).value() - self.first_flight()
     }
 
     fn motion(&self, t: fx128) -> (fx128, fx128) {
-        let (g, half) = (fx128::lit(self.gravity), fx128::lit(0.5));
-        if t < self.first_bounce() {
-            let v0 = fx128::lit(self.v0);
-            return (fx128::lit(self.x0) + t * (v0 - g * t * half), v0 - g * t);
+        let (late, time) = (self.lateness(t), Scaled::of_wide(t));
+        if late.0 < 0.0 || t.0 == 0.0 {
+            let (x0, v0, fall) = (Scaled::of(self.x0), Scaled::of(self.v0), Scaled::of(-self.gravity).times(time));
+            let x = [x0, v0.times(time), fall.times(time).shifted(-1)];
+            return (Scaled::sum(&x), Scaled::sum(&[v0, fall]));
         }
-        let Some(arc) = self.arc(t) else { return (fx128::ZERO, fx128::ZERO) };
-        let since = t - arc.from;
-        (since * (arc.speed - g * since * half), arc.speed - g * since)
+        let Some(Arc { since, left, .. }) = self.arc(late) else { return (fx128::ZERO, fx128::ZERO) };
+        let (speed, two) = (self.impact(), fx128::lit(2.0));
+        let height = self.flight().times(speed).times(Scaled::of_wide(since * (left - since)));
+        (height.value(), speed.times(Scaled::of_wide(left - two * since)).value())
     }
 
-    /// error / h of position and velocity at the horizon, to leading order, for bounces seen `late`[j] h after they happen.
+    /// Bounces until the horizon.
+    fn bounces(&self) -> u64 {
+        let late = self.lateness(fx128::lit(self.info().horizon_s));
+        if late.0 < 0.0 { 0 } else { self.arc(late).map_or(0, |arc| arc.bounces) }
+    }
+
+    /// error / h of position and velocity at the horizon, to leading order, if every bounce is seen at once, and what each
+    /// bounce seen h late adds to it, in order.
     ///
     /// In flight the positions of explicit (`lag` = 1) and semi-implicit or implicit Euler (-1) lie on the parabola of the
     /// velocity u = v + lag g h / 2; the others have lag 0. `delay` and `extra` are the lateness of the ball and the excess of
     /// its speed u, in h and g h.
-    fn first_order(&self, lag: f64, late: &[f64]) -> [f64; 2] {
-        let (g, e, v0) = (self.gravity, self.restitution, self.v0);
+    fn first_order(&self, lag: f64) -> ([f64; 2], Vec<[f64; 2]>) {
+        let (g, e, count) = (self.gravity, self.restitution, self.bounces());
+        let late = self.lateness(fx128::lit(self.info().horizon_s));
+        let arc = if late.0 < 0.0 { None } else { self.arc(late) };
+        let end =
+            arc.map_or((0.0, 0.0), |arc| (arc.since.to_f64() * self.flight().value().to_f64(), arc.left.to_f64()));
         let impact = self.impact_speed().to_f64();
-        let end_s = self.info().horizon_s;
+        let v = impact * end.1 - g * end.0;
+        let at_end = |delay: f64, extra: f64| [-v * delay + g * extra * end.0, g * (delay + extra)];
         // u0 = v0 + lag g h / 2: V^2 = u0^2 + 2 g x0, t_1 = (u0 + V) / g.
-        let mut extra = 0.5 * lag * v0 / impact;
+        let mut extra = 0.5 * lag * self.v0 / impact;
         let mut delay = 0.5 * lag + extra;
-        for (j, s) in late.iter().enumerate() {
+        for j in 0..count {
             if j > 0 {
                 delay += 2.0 * extra;
             }
-            // Reflected s h late, at the depth s h V: up through the floor s h / e later, slower by g s h / e, faster by e g s h.
-            delay += s * (1.0 + 1.0 / e);
-            extra = e * extra + 0.5 * (1.0 + e) * lag + s * (e - 1.0 / e);
+            extra = e * extra + 0.5 * (1.0 + e) * lag;
         }
-        let at = self.arc(fx128::lit(end_s)).map_or((0.0, 0.0), |arc| (arc.from.to_f64(), arc.speed.to_f64()));
-        let since = end_s - at.0;
-        let v = at.1 - g * since;
-        [-v * delay + g * extra * since, g * (delay + extra - 0.5 * lag)]
+        let none = at_end(delay, extra);
+        // Reflected h late, at the depth h V: up through the floor h / e later, slower by g h / e, faster by e g h.
+        let (mut delay, mut extra) = (1.0 + 1.0 / e, e - 1.0 / e);
+        let mut each = Vec::with_capacity(count as usize);
+        for _ in 0..count {
+            each.push(at_end(delay, extra));
+            delay += 2.0 * extra;
+            extra *= e;
+        }
+        each.reverse();
+        ([none[0], none[1] - 0.5 * lag * g], each)
     }
 
     /// The largest |error| / h over all phases of the bounces in their steps.
     fn envelope(&self, lag: f64) -> [f64; 2] {
-        let bounces = self.breaks_s().len();
-        let none = self.first_order(lag, &vec![0.0; bounces]);
+        let (none, each) = self.first_order(lag);
         let (mut low, mut high) = (none, none);
-        for j in 0..bounces {
-            let mut late = vec![0.0; bounces];
-            late[j] = 1.0;
-            let with = self.first_order(lag, &late);
+        for late in each {
             for c in 0..2 {
-                low[c] += (with[c] - none[c]).min(0.0);
-                high[c] += (with[c] - none[c]).max(0.0);
+                low[c] += late[c].min(0.0);
+                high[c] += late[c].max(0.0);
             }
         }
         [0, 1].map(|c| low[c].abs().max(high[c].abs()))
@@ -198,28 +263,37 @@ impl Scene for BouncingBall {
 
     fn check(&self) -> Result<(), Error> {
         let (rest, end) = (self.rest_s(), self.info().horizon_s);
-        if rest > end {
-            return Ok(());
+        let refuse = |parameter: &str, value: f64, expected: String| {
+            Err(Error::Parameter {
+                scene: "bouncing-ball".to_owned(),
+                parameter: parameter.to_owned(),
+                value: value.to_string(),
+                expected,
+            })
+        };
+        if rest <= end {
+            let expected =
+                format!("the ball rests at {rest:.3} s, before the end of the run at {end} s: drop it from higher");
+            return refuse("restitution", self.restitution, expected);
         }
-        Err(Error::Parameter {
-            scene: "bouncing-ball".to_owned(),
-            parameter: "restitution".to_owned(),
-            value: self.restitution.to_string(),
-            expected: format!(
-                "the ball rests at {rest:.3} s, before the end of the run at {end} s: drop it from higher"
-            ),
-        })
+        let late = self.lateness(fx128::lit(end));
+        let bounces = if late.0 <= 0.0 { 0.0 } else { self.arc(late).map_or(f64::NAN, |arc| arc.bounces as f64) };
+        // Written so that a NaN is refused.
+        if !(bounces <= MOST_BOUNCES) {
+            let expected = format!(
+                "the ball bounces more than {MOST_BOUNCES} times until the end of the run at {end} s: drop it from \
+                 higher, or with less gravity"
+            );
+            return refuse("x0", self.x0, expected);
+        }
+        let seen = Motion::<f64>::observe(self, &self.exact(end));
+        answerable::range("bouncing-ball", self, &seen, end)
     }
 
     fn breaks_s(&self) -> Vec<f64> {
-        let end = fx128::lit(self.info().horizon_s);
-        if end < self.first_bounce() {
-            return Vec::new();
-        }
-        let count = self.arc(end).map_or(0, |arc| arc.bounces);
-        let (g, e) = (self.gravity, self.restitution);
-        let flight = |n: i32| 2.0 * e.powi(n) * self.impact_speed().to_f64() / g;
-        (0..count as i32).map(|n| self.first_bounce().to_f64() + (1..=n).map(flight).sum::<f64>()).collect()
+        let first = self.first_flight();
+        let at = |n: u64| self.flight().times(Scaled::of_wide(first + self.flights(fx128::lit(n as f64))));
+        (0..self.bounces()).map(|n| at(n).value().to_f64()).collect()
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

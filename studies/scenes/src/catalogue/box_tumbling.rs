@@ -10,6 +10,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -19,6 +20,7 @@ use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
 use crate::special::free_top::FreeTop;
+use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::Theory;
 
 scene_parameters! {
@@ -61,9 +63,11 @@ impl<T: Real> RigidBody<T> for BoxTumbling {
 impl<T: Single> RigidMotion<T> for BoxTumbling {
     fn exact(&self, t: T) -> Kinematics<T, Vector3<T>> {
         let (attitude, omega_body) = FreeTop::new(self.inertia, self.attitude, self.omega).at(t);
-        let (v0, gained) = (lit::<T>(self.v0), lit::<T>(self.gravity) * t);
-        let position = lit::<T>(self.x0) + (v0 + gained * T::lit(0.5)) * t;
-        Kinematics { position, velocity: v0 + gained, attitude, omega_body }
+        let (time, one) = (Scaled::of_wide(t.widen()), Scaled::of(1.0));
+        let [x0, v0, gravity] = [self.x0, self.v0, self.gravity].map(lit::<fx128>);
+        let position = sum_of_vectors([(one, x0), (time, v0), (time.times(time).shifted(-1), gravity)]);
+        let velocity = sum_of_vectors([(one, v0), (time, gravity)]);
+        Kinematics { position: position.map(T::narrow), velocity: velocity.map(T::narrow), attitude, omega_body }
     }
 }
 
@@ -80,7 +84,11 @@ impl Scene for BoxTumbling {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("box-tumbling", self.inertia, self.attitude)
+        rigid::check("box-tumbling", self.inertia, self.attitude)?;
+        rigid::check_free("box-tumbling", &self.info(), &self.omega)?;
+        let end_s = self.info().horizon_s;
+        let seen = Observation::of_motion(&RigidMotion::<fx128>::exact(self, fx128::lit(end_s)));
+        answerable::range("box-tumbling", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -1,8 +1,9 @@
 //! A charge in a constant electric and magnetic field: m v' = q (E + v x B).
 //!
-//! With W = (q / m) B, b = W / |W|, a = (q / m) E, drift u = a x W / W^2 and w = v0_perp - u:
-//! v = (v_par + a_par t) b + u + w cos|W|t + (w x b) sin|W|t and
-//! x = x0 + (v_par t + a_par t^2 / 2) b + u t + w sin(|W|t) / |W| + (w x b)(1 - cos|W|t) / |W|.
+//! With W = (q / m) B, b = W / |W|, a = (q / m) E, z = |W| t: v = R(t) v0 + R1 a and x = x0 + R1 v0 + R2 a, where for any u
+//! R u = u_par + u_perp cos z + (u x b) sin z, and its integrals over the time are
+//! R1 u = t (u_par + u_perp sin z / z + (u x b)(1 - cos z) / z), R2 u = t^2 (u_par / 2 + u_perp (1 - cos z) / z^2 + (u x b)(z - sin z) / z^2).
+//! The drift a x W / W^2 is their limit, and nothing is divided by a field that is nearly zero.
 //! Source: J. D. Jackson, Classical Electrodynamics (1999), 12.2 and 12.3 (non-relativistic).
 
 use faer::fx128;
@@ -11,6 +12,7 @@ use integrator::rotation::{cross, dot};
 use integrator::{Model, Real, Single, State};
 use nalgebra::{DMatrix, Vector3};
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::linear::{Linear, Parts};
 use crate::error::Error;
@@ -19,6 +21,8 @@ use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::elementary::{sinc, versine_over_square, x_minus_sin};
+use crate::special::scaled::{Scaled, exponent_of_largest, sum_of_vectors, times_two_to};
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
@@ -49,6 +53,19 @@ impl ChargedParticle {
     /// |W| = |q| |B| / m, rad/s.
     pub fn gyration(&self) -> f64 {
         self.charge.abs() / self.mass * Vector3::from(self.magnetic).norm()
+    }
+
+    /// b = W / |W| (zero without a field) and |W| t, from q t / m.
+    fn axis_and_phase(&self, gain: Scaled) -> (Vector3<fx128>, fx128) {
+        let unit = exponent_of_largest(&self.magnetic);
+        let field = lit::<fx128>(self.magnetic).map(|c| times_two_to(c, -unit));
+        let size = dot(field, field).sqrt();
+        let turn = gain.shifted(unit).times(Scaled::of_wide(size)).value();
+        if size.0 == 0.0 || turn.0 == 0.0 {
+            return (Vector3::repeat(fx128::ZERO), fx128::ZERO);
+        }
+        let sense = if turn.0 < 0.0 { -fx128::ONE } else { fx128::ONE };
+        (field * (sense / size), Real::abs(turn))
     }
 
     fn is_a_circle(&self) -> bool {
@@ -82,25 +99,30 @@ impl<T: Real> Model<T> for ChargedParticle {
 
 impl<T: Single> Motion<T> for ChargedParticle {
     fn exact(&self, t: T) -> State<Vector3<T>> {
-        let t = t.widen();
-        let ratio = fx128::lit(self.charge) / fx128::lit(self.mass);
-        let rate = lit::<fx128>(self.magnetic) * ratio;
-        let push = lit::<fx128>(self.electric) * ratio;
-        let square = dot(rate, rate);
-        let size = square.sqrt();
-        let (b, v0) = (rate / size, lit::<fx128>(self.v0));
-        let drift = cross(push, rate) / square;
-        let (along, push_along) = (dot(v0, b), dot(push, b));
-        let w = v0 - b * along - drift;
-        let (sine, cosine) = (size * t).sin_cos();
-        // 1 - cos without cancellation
-        let half_sine = (size * t * fx128::lit(0.5)).sin_cos().0;
-        let versine = fx128::lit(2.0) * half_sine * half_sine;
-        let sideways = cross(w, b);
-        let travel = along * t + push_along * t * t * fx128::lit(0.5);
+        let (time, one) = (Scaled::of_wide(t.widen()), Scaled::of(1.0));
+        let gain = Scaled::of(self.charge).over(Scaled::of(self.mass)).times(time);
+        let (b, phase) = self.axis_and_phase(gain);
+        let [x0, v0, electric] = [self.x0, self.v0, self.electric].map(lit::<fx128>);
+        let (sine, cosine) = phase.sin_cos();
+        let (first, second) = (sinc(phase), versine_over_square(phase) * phase);
+        let third = if phase.0 < 1e-40 { fx128::ZERO } else { x_minus_sin(phase) / (phase * phase) };
+        // What becomes of a velocity, its integral over the time, and the integral of that one, for a vector u.
+        let parts = |u: Vector3<fx128>| {
+            let along = b * dot(u, b);
+            (along, u - along, cross(u, b))
+        };
+        let unit = exponent_of_largest(&self.v0.map(f64::abs));
+        let (along, across, sideways) = parts(v0.map(|c| times_two_to(c, -unit)));
+        let turned = along + across * cosine + sideways * sine;
+        let moved = along + across * first + sideways * second;
+        let push_unit = exponent_of_largest(&self.electric);
+        let (along, across, sideways) = parts(electric.map(|c| times_two_to(c, -push_unit)));
+        let pushed = along + across * first + sideways * second;
+        let carried = along * fx128::lit(0.5) + across * versine_over_square(phase) + sideways * third;
+        let (v, a) = (one.shifted(unit), gain.shifted(push_unit));
         rounded(
-            lit::<fx128>(self.x0) + b * travel + drift * t + (w * sine + sideways * versine) / size,
-            b * (along + push_along * t) + drift + w * cosine + sideways * sine,
+            sum_of_vectors([(one, x0), (v.times(time), moved), (a.times(time), carried)]),
+            sum_of_vectors([(v, turned), (a, pushed)]),
         )
     }
     fn observe(&self, s: &State<Vector3<T>>) -> Observation {
@@ -122,7 +144,11 @@ impl Scene for ChargedParticle {
 
     fn check(&self) -> Result<(), Error> {
         if self.gyration() > 0.0 {
-            return Ok(());
+            let end_s = self.info().horizon_s;
+            let phase = self.gyration() * end_s;
+            answerable::phase("charged-particle", ("magnetic", &self.magnetic), phase, end_s)?;
+            let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+            return answerable::range("charged-particle", self, &seen, end_s);
         }
         Err(Error::Parameter {
             scene: "charged-particle".to_owned(),

@@ -8,11 +8,14 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
-use crate::motion::Motion;
+use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::{ExpectedGrowth, Theory};
 
 scene_parameters! {
@@ -51,9 +54,11 @@ impl<T: Real> Model<T> for ConstantForce {
 
 impl<T: Single> Motion<T> for ConstantForce {
     fn exact(&self, t: T) -> State<Vector3<T>> {
-        let a: Vector3<T> = self.acceleration();
-        let v0 = lit(self.v0);
-        State { q: lit(self.x0) + (v0 + a * (t * T::lit(0.5))) * t, v: v0 + a * t }
+        let (time, one) = (Scaled::of_wide(t.widen()), Scaled::of(1.0));
+        let gain = time.over(Scaled::of(self.mass));
+        let [x0, v0, force] = [self.x0, self.v0, self.force].map(lit::<fx128>);
+        let position = sum_of_vectors([(one, x0), (time, v0), (gain.times(time).shifted(-1), force)]);
+        rounded(position, sum_of_vectors([(one, v0), (gain, force)]))
     }
     fn observe(&self, s: &State<Vector3<T>>) -> Observation {
         Observation::particles(s)
@@ -70,6 +75,12 @@ impl Scene for ConstantForce {
             time_scale_s: 1.0,
             coarsest_steps: 4,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("constant-force", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

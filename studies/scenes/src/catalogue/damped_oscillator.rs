@@ -8,12 +8,15 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
 use crate::catalogue::oscillation::Oscillation;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
 scene_parameters! {
@@ -49,14 +52,16 @@ impl DampedOscillator {
     }
 
     fn oscillation(&self) -> Oscillation {
-        let mass = fx128::lit(self.mass);
+        let (zeta, one) = (fx128::lit(self.zeta), fx128::ONE);
+        let square = Scaled::of(self.stiffness).over(Scaled::of(self.mass));
         Oscillation {
-            decay: self.damping::<fx128>() / (mass + mass),
-            square: fx128::lit(self.stiffness) / mass,
-            force: fx128::ZERO,
-            drive: fx128::ZERO,
-            x0: fx128::lit(self.x0),
-            v0: fx128::lit(self.v0),
+            decay: square.sqrt().times(Scaled::of(self.zeta)),
+            square,
+            beat: (one - zeta) * (one + zeta),
+            force: Scaled::of(0.0),
+            drive: 0.0,
+            x0: self.x0,
+            v0: self.v0,
         }
     }
 }
@@ -89,6 +94,14 @@ impl Scene for DampedOscillator {
             time_scale_s: (self.mass / self.stiffness).sqrt(),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let phase = self.oscillation().largest_phase(end_s);
+        answerable::phase("damped-oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("damped-oscillator", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

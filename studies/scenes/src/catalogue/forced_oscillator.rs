@@ -8,12 +8,15 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
 use crate::catalogue::oscillation::Oscillation;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
 scene_parameters! {
@@ -48,14 +51,17 @@ impl ForcedOscillator {
     }
 
     fn oscillation(&self) -> Oscillation {
-        let mass = fx128::lit(self.mass);
+        let per_mass = |x: f64| Scaled::of(x).over(Scaled::of(self.mass));
+        let (decay, square) = (per_mass(self.damping).shifted(-1), per_mass(self.stiffness));
+        let ratio = decay.over(square.sqrt()).value();
         Oscillation {
-            decay: fx128::lit(self.damping) / (mass + mass),
-            square: fx128::lit(self.stiffness) / mass,
-            force: fx128::lit(self.force) / mass,
-            drive: fx128::lit(self.drive),
-            x0: fx128::lit(self.x0),
-            v0: fx128::lit(self.v0),
+            decay,
+            square,
+            beat: (fx128::ONE - ratio) * (fx128::ONE + ratio),
+            force: per_mass(self.force),
+            drive: self.drive,
+            x0: self.x0,
+            v0: self.v0,
         }
     }
 }
@@ -90,6 +96,15 @@ impl Scene for ForcedOscillator {
             time_scale_s: (self.mass / self.stiffness).sqrt().min(1.0 / self.drive.max(f64::MIN_POSITIVE)),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        answerable::phase("forced-oscillator", ("drive", &self.drive), self.drive * end_s, end_s)?;
+        let phase = self.oscillation().largest_phase(end_s);
+        answerable::phase("forced-oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("forced-oscillator", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

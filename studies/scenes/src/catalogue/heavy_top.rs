@@ -8,6 +8,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Rotation, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -17,6 +18,7 @@ use crate::observation::Observation;
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
 use crate::special::lagrange_top::LagrangeTop;
+use crate::special::scaled::Scaled;
 
 scene_parameters! {
     /// A symmetric top on a fixed point, its centre of mass on the third axis of the body.
@@ -81,18 +83,11 @@ impl Scene for HeavyTop {
 
     fn check(&self) -> Result<(), Error> {
         rigid::check("heavy-top", self.inertia(), self.attitude)?;
-        let [w, x, y, z] = self.attitude;
-        let vertical = (x == 0.0 && y == 0.0) || (w == 0.0 && z == 0.0);
-        if vertical && (self.omega[0] != 0.0 || self.omega[1] != 0.0) {
-            return Err(Error::Parameter {
-                scene: "heavy-top".to_owned(),
-                parameter: "omega".to_owned(),
-                value: self.omega.map(|x| x.to_string()).join(","),
-                expected: "a top that starts on the vertical may only spin about it: tilt it, or give 0,0,omega_3"
-                    .to_owned(),
-            });
-        }
-        Ok(())
+        let end_s = self.info().horizon_s;
+        let of_omega = Vector3::from(self.omega).norm() * end_s;
+        answerable::phase("heavy-top", ("omega", &self.omega), of_omega, end_s)?;
+        let of_gravity = Scaled::of(self.mgl).over(Scaled::of(self.inertia_1)).sqrt().times(Scaled::of(end_s)).value();
+        answerable::phase("heavy-top", ("mgl", &self.mgl), of_gravity.to_f64(), end_s)
     }
 
     /// Energy, and the vertical component of the angular momentum: the others are not conserved.

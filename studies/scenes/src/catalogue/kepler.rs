@@ -9,12 +9,15 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector2;
 
+use crate::catalogue::answerable;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
 use crate::special::kepler::{eccentric_anomaly, slope};
+use crate::special::scaled::Scaled;
 use crate::theory::ExpectedGrowth;
 use crate::theory::Law;
 
@@ -35,6 +38,12 @@ scene_parameters! {
 }
 
 impl Kepler {
+    /// n = sqrt(mu / a^3), rad/s.
+    fn mean_motion(&self) -> Scaled {
+        let a = Scaled::of(self.semi_major);
+        Scaled::of(self.mu).over(a).sqrt().over(a)
+    }
+
     /// A circle.
     pub fn circular() -> Self {
         Kepler { eccentricity: 0.0, ..Self::default() }
@@ -63,15 +72,17 @@ impl<T: Real> Model<T> for Kepler {
 
 impl<T: Single> Motion<T> for Kepler {
     fn exact(&self, t: T) -> State<Vector2<T>> {
-        let (a, e, one) = (fx128::lit(self.semi_major), fx128::lit(self.eccentricity), fx128::ONE);
-        let n = (fx128::lit(self.mu) / a).sqrt() / a;
-        let at = eccentric_anomaly(fx128::lit(self.anomaly) + n * t.widen(), e);
+        let (e, one) = (fx128::lit(self.eccentricity), fx128::ONE);
+        let phase = self.mean_motion().times(Scaled::of_wide(t.widen())).value();
+        let at = eccentric_anomaly(fx128::lit(self.anomaly) + phase, e);
         let half = (at.angle * fx128::lit(0.5)).sin_cos().0;
         let flattening = ((one - e) * (one + e)).sqrt();
         let distance = slope(at.angle, e);
-        let position = Vector2::new(one - e - fx128::lit(2.0) * half * half, flattening * at.sine) * a;
-        let velocity = Vector2::new(-at.sine, flattening * at.cosine) * (a * n / distance);
-        rounded(position, velocity)
+        let position = Vector2::new(one - e - fx128::lit(2.0) * half * half, flattening * at.sine);
+        let velocity = Vector2::new(-at.sine, flattening * at.cosine) / distance;
+        let length = Scaled::of(self.semi_major);
+        let times = |unit: Scaled| move |c: fx128| unit.times(Scaled::of_wide(c)).value();
+        rounded(position.map(times(length)), velocity.map(times(length.times(self.mean_motion()))))
     }
     fn observe(&self, s: &State<Vector2<T>>) -> Observation {
         Observation::particles(s)
@@ -90,6 +101,14 @@ impl Scene for Kepler {
             time_scale_s: (a / self.mu).sqrt() * a * (1.0 - e).powf(1.5),
             coarsest_steps: if e > 0.8 { 32 } else { 16 },
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let phase = self.mean_motion().times(Scaled::of(end_s)).value().to_f64();
+        answerable::phase("kepler", ("mu", &self.mu), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("kepler", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

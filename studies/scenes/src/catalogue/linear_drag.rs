@@ -8,14 +8,17 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::{DMatrix, Vector3};
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::linear::{Linear, Parts, RK4_REAL};
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
 use crate::special::elementary::expm1;
+use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::{StabilityLimit, Theory};
 
 scene_parameters! {
@@ -52,18 +55,17 @@ impl LinearDrag {
     }
 }
 
-/// (t - (1 - e^(-k t)) / k) / k = t^2 (1/2 - z/6 + z^2/24 - ...) with z = k t, by the series for z < 1/2.
-fn second_integral(k: fx128, t: fx128) -> fx128 {
-    let z = k * t;
+/// (z - 1 + e^-z) / z^2 = 1/2 - z/6 + z^2/24 - ..., by the series for z < 1/2.
+fn second_integral(z: fx128) -> fx128 {
     if z.0 > 0.5 {
-        return (t + expm1(-z) / k) / k;
+        return (fx128::ONE + expm1(-z) / z) / z;
     }
     let (mut term, mut sum) = (fx128::lit(0.5), fx128::lit(0.5));
     for n in 3..40 {
         term *= -z / fx128::lit(f64::from(n));
         sum += term;
     }
-    sum * t * t
+    sum
 }
 
 impl<T: Real> Model<T> for LinearDrag {
@@ -77,11 +79,16 @@ impl<T: Real> Model<T> for LinearDrag {
 
 impl<T: Single> Motion<T> for LinearDrag {
     fn exact(&self, t: T) -> State<Vector3<T>> {
-        let (t, k) = (t.widen(), fx128::lit(self.drag) / fx128::lit(self.mass));
-        let decay = expm1(-(k * t));
-        let (e1, e2) = (-decay / k, second_integral(k, t));
-        let (v0, g) = (lit::<fx128>(self.v0), lit::<fx128>(self.gravity));
-        rounded(lit::<fx128>(self.x0) + v0 * e1 + g * e2, v0 * (decay + fx128::ONE) + g * e1)
+        let (time, one) = (Scaled::of_wide(t.widen()), Scaled::of(1.0));
+        // z = k t; e1 = t (1 - e^-z) / z and e2 = t^2 (z - 1 + e^-z) / z^2.
+        let z = Scaled::of(self.drag).over(Scaled::of(self.mass)).times(time).value();
+        let decay = expm1(-z);
+        let first = if z.0 == 0.0 { fx128::ONE } else { -decay / z };
+        let e1 = Scaled::of_wide(first).times(time);
+        let e2 = Scaled::of_wide(second_integral(z)).times(time).times(time);
+        let left = Scaled::of_wide((-z).exp());
+        let [x0, v0, g] = [self.x0, self.v0, self.gravity].map(lit::<fx128>);
+        rounded(sum_of_vectors([(one, x0), (e1, v0), (e2, g)]), sum_of_vectors([(left, v0), (e1, g)]))
     }
     fn observe(&self, s: &State<Vector3<T>>) -> Observation {
         Observation::particles(s)
@@ -98,6 +105,12 @@ impl Scene for LinearDrag {
             time_scale_s: 1.0 / self.k(),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("linear-drag", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

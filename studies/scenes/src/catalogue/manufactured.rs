@@ -127,7 +127,13 @@ impl<T: Real> RigidBody<T> for Manufactured {
 
 impl<T: Single> RigidMotion<T> for Manufactured {
     fn exact(&self, t: T) -> Kinematics<T, Vector3<T>> {
-        self.prescribed(t).at
+        let Kinematics { position, velocity, attitude, omega_body } = self.prescribed(t.widen()).at;
+        Kinematics {
+            position: position.map(T::narrow),
+            velocity: velocity.map(T::narrow),
+            attitude: rigid::narrow(attitude),
+            omega_body: omega_body.map(T::narrow),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The one list of scenes. A new scene is one file beside this one, and one line in [`catalogue`].
 
+mod answerable;
 pub mod bouncing_ball;
 pub mod box_tumbling;
 pub mod charged_particle;

@@ -11,11 +11,15 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::elementary::sinc;
+use crate::special::scaled::Scaled;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
@@ -37,6 +41,10 @@ impl Oscillator {
     /// omega = sqrt(k / m), rad/s.
     pub fn omega(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()
+    }
+
+    fn frequency(&self) -> Scaled {
+        Scaled::of(self.stiffness).over(Scaled::of(self.mass)).sqrt()
     }
 
     /// lim (error / h^p) of position and velocity at the time `t_s`.
@@ -78,10 +86,14 @@ impl<T: Real> Model<T> for Oscillator {
 
 impl<T: Single> Motion<T> for Oscillator {
     fn exact(&self, t: T) -> State<Vector1<T>> {
-        let w = (fx128::lit(self.stiffness) / fx128::lit(self.mass)).sqrt();
-        let (sine, cosine) = (w * t.widen()).sin_cos();
-        let (x0, v0) = (fx128::lit(self.x0), fx128::lit(self.v0));
-        rounded(Vector1::new(x0 * cosine + v0 / w * sine), Vector1::new(v0 * cosine - x0 * w * sine))
+        let (time, w) = (Scaled::of_wide(t.widen()), self.frequency());
+        let phase = w.times(time).value();
+        let cosine = Scaled::of_wide(phase.sin_cos().1);
+        let sinc = Scaled::of_wide(sinc(phase));
+        let (x0, v0) = (Scaled::of(self.x0), Scaled::of(self.v0));
+        let x = [x0.times(cosine), v0.times(time).times(sinc)];
+        let v = [v0.times(cosine), Scaled::of(-self.x0).times(w).times(Scaled::of_wide(phase.sin_cos().0))];
+        rounded(Vector1::new(Scaled::sum(&x)), Vector1::new(Scaled::sum(&v)))
     }
     fn observe(&self, s: &State<Vector1<T>>) -> Observation {
         Observation::particles(s)
@@ -99,6 +111,14 @@ impl Scene for Oscillator {
             time_scale_s,
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let phase = self.frequency().times(Scaled::of(end_s)).value().to_f64();
+        answerable::phase("oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("oscillator", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

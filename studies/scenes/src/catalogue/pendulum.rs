@@ -11,14 +11,17 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
-use crate::special::elementary::{asinh, atan, sech, sinh};
+use crate::special::elementary::{asinh, atan, sech, sinc, sinh, versine_over_square};
 use crate::special::elliptic;
 use crate::special::jacobi::Modulus;
+use crate::special::scaled::Scaled;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, Theory};
 
@@ -49,49 +52,82 @@ impl Pendulum {
         Pendulum { angle: 0.5, omega: 4.953125, ..Self::default() }
     }
 
+    /// w0 = sqrt(g / l), rad/s.
+    fn frequency(&self) -> Scaled {
+        Scaled::of(self.gravity).over(Scaled::of(self.length)).sqrt()
+    }
+
     fn omega0(&self) -> fx128 {
-        (fx128::lit(self.gravity) / fx128::lit(self.length)).sqrt()
+        self.frequency().value()
     }
 
     /// theta and theta' at the time t after (angle, omega).
     fn motion(&self, omega: fx128, t: fx128) -> (fx128, fx128) {
-        let (w0, half) = (self.omega0(), fx128::lit(0.5));
-        let turns = (fx128::lit(self.angle) / (fx128::PI + fx128::PI)).round() * (fx128::PI + fx128::PI);
-        let start = fx128::lit(self.angle) - turns;
-        let p0 = omega * half / w0;
+        let (half, given) = (fx128::lit(0.5), fx128::lit(self.angle));
+        let (w0, time, omega) = (self.frequency(), Scaled::of_wide(t), Scaled::of_wide(omega));
+        let start = nearest_turn(given);
+        let p0 = omega.over(w0).shifted(-1).value();
+        let phase = w0.times(time).value();
         let (sine, cosine) = (start * half).sin_cos();
+        let advanced = |by: &[Scaled]| Scaled::sum(&[&[Scaled::of_wide(given)], by].concat());
+        if p0.0.abs() > FAST {
+            return (advanced(&[omega.times(time)]), omega.value());
+        }
+        if sine.0.abs().max(p0.0.abs()) < SMALL {
+            let (swing, cosine) = (Scaled::of_wide(start), Scaled::of_wide(phase.sin_cos().1));
+            let (sine, sinc) = (Scaled::of_wide(phase.sin_cos().0), Scaled::of_wide(sinc(phase)));
+            let versine = phase * versine_over_square(phase) * phase;
+            let angle = advanced(&[swing.times(Scaled::of_wide(-versine)), omega.times(time).times(sinc)]);
+            let back = Scaled::of_wide(-start).times(w0).times(sine);
+            return (angle, Scaled::sum(&[omega.times(cosine), back]));
+        }
         let mc = (cosine - p0) * (cosine + p0);
         let k = (sine * sine + p0 * p0).sqrt();
-        let (angle, rate) = if k.0 == 0.0 {
-            (fx128::ZERO, fx128::ZERO)
-        } else if mc.0 > 0.0 {
+        let (angle, rate) = if mc.0 > 0.0 {
             // F of an amplitude in (-pi, pi]: odd, and reflected at pi/2.
             let (s, c) = (sine / k, p0 / k);
             let quarter = elliptic::f_of(s, Real::abs(c), mc);
             let u0 = if c.0 >= 0.0 { quarter } else { elliptic::complete_f(mc) * fx128::lit(2.0) - quarter };
-            let at = Modulus::new(mc).at::<fx128>(w0 * t + u0);
-            ((k * at.sn).atan2(at.dn) * fx128::lit(2.0), (k + k) * w0 * at.cn)
+            let at = Modulus::new(mc).at::<fx128>(phase + u0);
+            ((k * at.sn).atan2(at.dn) * fx128::lit(2.0), (k + k) * at.cn)
         } else {
             let sense = if p0.0 < 0.0 { -fx128::ONE } else { fx128::ONE };
-            let (angle, rate) = turning(sense * start * half, mc, k, w0, t);
+            let (angle, rate) = turning(sense * start * half, mc, k, phase);
             (sense * angle, sense * rate)
         };
-        (angle + turns, rate)
+        (given - start + angle, Scaled::of_wide(rate).times(w0).value())
     }
 }
 
-/// theta and theta' of a rotation (mc < 0) or of the separatrix (mc = 0) in the positive sense, from theta / 2 at the start.
-fn turning(half_angle: fx128, mc: fx128, k: fx128, w0: fx128, t: fx128) -> (fx128, fx128) {
+/// Above this theta' / (2 w0) gravity changes nothing: k^-2 is below 2^-106.
+const FAST: f64 = 1e17;
+/// Below this size of sin(theta / 2) and theta' / (2 w0) the swing is harmonic: k^2 / 16 of MOST_RADIANS is below 2^-106.
+const SMALL: f64 = 1e-25;
+
+/// An angle in [-pi, pi] that differs by whole turns.
+fn nearest_turn(angle: fx128) -> fx128 {
+    if angle.0.abs() < 1e6 {
+        let two_pi = fx128::PI + fx128::PI;
+        return angle - (angle / two_pi).round() * two_pi;
+    }
+    // Their sine and cosine are reduced with all digits of pi.
+    let (sine, cosine) = angle.sin_cos();
+    sine.atan2(cosine)
+}
+
+/// theta and theta' / w0 of a rotation (mc < 0) or of the separatrix (mc = 0) in the positive sense, from theta / 2 at the
+/// start, at the phase w0 t.
+fn turning(half_angle: fx128, mc: fx128, k: fx128, phase: fx128) -> (fx128, fx128) {
     let two = fx128::lit(2.0);
     if mc.0 == 0.0 {
         let (sine, cosine) = half_angle.sin_cos();
-        let u = asinh(sine / cosine) + w0 * t;
-        return (two * atan(sinh(u)), two * w0 * sech(u));
+        let u = asinh(sine / cosine) + phase;
+        return (two * atan(sinh(u)), two * sech(u));
     }
     let mc_r = -mc / (k * k);
-    let u = elliptic::f(half_angle, mc_r) + k * w0 * t;
+    let u = elliptic::f(half_angle, mc_r) + k * phase;
     let modulus = Modulus::new(mc_r);
-    (two * modulus.amplitude::<fx128>(u), two * k * w0 * modulus.at::<fx128>(u).dn)
+    (two * modulus.amplitude::<fx128>(u), two * k * modulus.at::<fx128>(u).dn)
 }
 
 impl<T: Real> Model<T> for Pendulum {
@@ -106,7 +142,11 @@ impl<T: Real> Model<T> for Pendulum {
 
 impl<T: Single> Motion<T> for Pendulum {
     fn exact(&self, t: T) -> State<Vector1<T>> {
-        let (angle, rate) = self.motion(fx128::lit(self.omega), t.widen());
+        let (angle, rate) = match t.widen() {
+            // Exactly, where the elliptic functions of a start beside the separatrix lose digits.
+            t if t.0 == 0.0 => (fx128::lit(self.angle), fx128::lit(self.omega)),
+            t => self.motion(fx128::lit(self.omega), t),
+        };
         rounded(Vector1::new(angle), Vector1::new(rate))
     }
     fn observe(&self, s: &State<Vector1<T>>) -> Observation {
@@ -124,6 +164,16 @@ impl Scene for Pendulum {
             time_scale_s: 1.0 / self.omega0().to_f64(),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let time = Scaled::of(end_s);
+        let swung = self.frequency().times(time).value().to_f64();
+        answerable::phase("pendulum", ("gravity", &self.gravity), swung, end_s)?;
+        answerable::phase("pendulum", ("omega", &self.omega), self.omega * end_s, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("pendulum", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -10,6 +10,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Rotation, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -18,6 +19,7 @@ use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::scaled::{Scaled, unit_quaternion};
 use crate::theory::Theory;
 
 scene_parameters! {
@@ -40,6 +42,17 @@ impl PrincipalAxisTorque {
     fn index(&self) -> usize {
         // Checked to be 0, 1 or 2; a cast of anything else stays in range.
         (self.axis as usize).min(2)
+    }
+
+    /// tau / I about the axis, rad/s^2.
+    fn acceleration(&self) -> Scaled {
+        Scaled::of(self.torque).over(Scaled::of(self.inertia[self.index()]))
+    }
+
+    /// (omega + tau t / (2 I)) t / 2, rad.
+    fn half_angle(&self, time: Scaled) -> fx128 {
+        let terms = [Scaled::of(self.omega).times(time), self.acceleration().times(time).times(time).shifted(-1)];
+        Scaled::sum(&terms.map(|term| term.shifted(-1)))
     }
 
     /// `size` times the unit vector of the axis.
@@ -66,12 +79,12 @@ impl<T: Real> RigidBody<T> for PrincipalAxisTorque {
 impl<T: Single> RigidMotion<T> for PrincipalAxisTorque {
     fn exact(&self, t: T) -> Kinematics<T, Fixed<T>> {
         // In double-double: the angle of a long run has more digits than its sine needs.
-        let (t, half) = (t.widen(), fx128::lit(0.5));
-        let gained = fx128::lit(self.torque) * t / fx128::lit(self.inertia[self.index()]);
-        let start = Rotation::from_wxyz(self.attitude.map(fx128::lit));
-        let attitude = start * Rotation::exp(self.along_axis((fx128::lit(self.omega) + gained * half) * t));
-        let omega = self.along_axis(fx128::lit(self.omega) + gained);
-        rigid::fixed_point(rigid::narrow(attitude), omega.map(T::narrow))
+        let time = Scaled::of_wide(t.widen());
+        let (omega, gained) = (Scaled::of(self.omega), self.acceleration().times(time));
+        let (sine, cosine) = self.half_angle(time).sin_cos();
+        let turn = Rotation { w: cosine, v: self.along_axis(sine) };
+        let omega = self.along_axis(Scaled::sum(&[omega, gained]));
+        rigid::fixed_point(rigid::narrow(unit_quaternion(self.attitude) * turn), omega.map(T::narrow))
     }
 }
 
@@ -96,11 +109,16 @@ impl Scene for PrincipalAxisTorque {
                 expected: "must be 0, 1 or 2".to_owned(),
             });
         }
-        rigid::check("principal-axis-torque", self.inertia, self.attitude)
+        rigid::check("principal-axis-torque", self.inertia, self.attitude)?;
+        let end_s = self.info().horizon_s;
+        let phase = self.half_angle(Scaled::of(end_s)).to_f64();
+        let most =
+            if self.omega.abs() * end_s >= phase.abs() { ("omega", &self.omega) } else { ("torque", &self.torque) };
+        answerable::phase("principal-axis-torque", most, phase, end_s)
     }
 
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
-        let start = Rotation::from_wxyz(self.attitude.map(fx128::lit));
+        let start = unit_quaternion(self.attitude);
         let torque = start.rotate(self.along_axis(fx128::lit(self.torque)));
         let omega = start.rotate(self.along_axis(fx128::lit(self.omega)));
         rigid::account_less_torque(self.inertia, self.inertia[self.index()], torque, omega, t, seen)

@@ -10,13 +10,16 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::Vector1;
 
+use crate::catalogue::answerable;
 use crate::catalogue::linear::RK4_REAL;
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
-use crate::special::elementary::{atan, expm1, log1p, tanh};
+use crate::special::elementary::{atan, expm1, log1p, log1p_over, sinc, sinh, tanh, versine_over_square};
+use crate::special::scaled::Scaled;
 use crate::theory::{ExpectedOrder, StabilityLimit, Theory};
 
 scene_parameters! {
@@ -57,34 +60,77 @@ impl QuadraticDrag {
         (self.v0 < 0.0).then(|| (atan(fx128::lit(-self.v0) / vt) / r).to_f64())
     }
 
+    /// v0 / vt.
+    fn ratio(&self, v0: Scaled) -> fx128 {
+        let k = Scaled::of(self.drag).over(Scaled::of(self.mass));
+        v0.times(k.over(Scaled::of(self.gravity)).sqrt()).value()
+    }
+
+    /// r t.
+    fn phase(&self, t: Scaled) -> fx128 {
+        let k = Scaled::of(self.drag).over(Scaled::of(self.mass));
+        k.times(Scaled::of(self.gravity)).sqrt().times(t).value()
+    }
+
+    /// (v0 + g t p) / (1 + |v0| / vt q), where p = q / (r t).
+    fn velocity(&self, v0: Scaled, t: Scaled, p: fx128, shrunk: fx128) -> Scaled {
+        let gained = Scaled::of(self.gravity).times(t).times(Scaled::of_wide(p));
+        Scaled::of_wide(Scaled::sum(&[v0, gained])).over(Scaled::of_wide(shrunk))
+    }
+
     /// Distance and velocity after falling for the time t from the velocity v0 >= 0.
-    fn fall(&self, v0: fx128, t: fx128) -> (fx128, fx128) {
-        let (vt, r) = self.terminal();
-        let (th, ratio) = (tanh(r * t), v0 / vt);
-        let half = fx128::lit(0.5);
-        // ln(cosh u + c sinh u) = u + ln(1 + (1 - c) (e^(-2u) - 1) / 2)
-        let u = r * t;
-        let logarithm = u + log1p((fx128::ONE - ratio) * expm1(-(u + u)) * half);
-        (logarithm / self.k(), (v0 + vt * th) / (fx128::ONE + ratio * th))
+    fn fall(&self, v0: Scaled, t: Scaled) -> (Scaled, Scaled) {
+        let (u, ratio, half) = (self.phase(t), self.ratio(v0), fx128::lit(0.5));
+        let (th, over_u) = if u.0 < 1e-40 { (u, fx128::ONE) } else { (tanh(u), tanh(u) / u) };
+        let velocity = self.velocity(v0, t, over_u, fx128::ONE + ratio * th);
+        if u.0 >= 1.0 {
+            // ln(cosh u + c sinh u) = u + ln(1 + (1 - c) (e^(-2u) - 1) / 2), over k = (u / t)^2 / g
+            let logarithm = u + log1p((fx128::ONE - ratio) * expm1(-(u + u)) * half);
+            let length = Scaled::of(self.mass).over(Scaled::of(self.drag));
+            return (Scaled::of_wide(logarithm).times(length), velocity);
+        }
+        // With y = cosh u - 1 + c sinh u = k Y nothing is divided by k: ln(1 + y) / k = Y ln(1 + y) / y.
+        let half_sinh = if u.0 < 1e-40 { fx128::ONE } else { sinh(u * half) / (u * half) };
+        let whole_sinh = if u.0 < 1e-40 { fx128::ONE } else { sinh(u) / u };
+        let [by_weight, by_speed] = [half_sinh * half_sinh * half, whole_sinh];
+        let y = u * u * by_weight + ratio * u * by_speed;
+        let weight = Scaled::of(self.gravity).times(t).times(t).times(Scaled::of_wide(by_weight));
+        let sum = Scaled::sum(&[weight, v0.times(t).times(Scaled::of_wide(by_speed))]);
+        (Scaled::of_wide(sum).times(Scaled::of_wide(log1p_over(y))), velocity)
+    }
+
+    /// Height and velocity (downwards) after rising for the time t, before the apex.
+    fn rise_for(&self, v0: Scaled, t: Scaled) -> (Scaled, Scaled) {
+        let (u, ratio) = (self.phase(t), -self.ratio(v0));
+        let (sine, cosine) = u.sin_cos();
+        let over_u = sinc(u) / cosine;
+        let velocity = self.velocity(v0, t, over_u, fx128::ONE + ratio * (sine / cosine));
+        let y = ratio * sine - u * u * versine_over_square(u);
+        let weight = Scaled::of(-self.gravity).times(t).times(t).times(Scaled::of_wide(versine_over_square(u)));
+        let sum = Scaled::sum(&[v0.times(t).times(Scaled::of_wide(-sinc(u))), weight]);
+        (Scaled::of_wide(sum).times(Scaled::of_wide(log1p_over(y))), velocity)
     }
 
     fn motion(&self, t: fx128) -> (fx128, fx128) {
-        let (vt, r) = self.terminal();
-        let (x0, v0) = (fx128::lit(self.x0), fx128::lit(self.v0));
+        let (x0, v0, time) = (Scaled::of(self.x0), Scaled::of(self.v0), Scaled::of_wide(t));
+        let down = |parts: &[Scaled], v: Scaled| (Scaled::sum(parts), v.value());
         if self.v0 >= 0.0 {
-            let (distance, v) = self.fall(v0, t);
-            return (x0 + distance, v);
+            let (distance, v) = self.fall(v0, time);
+            return down(&[x0, distance], v);
         }
-        let ratio = v0 / vt;
-        let apex = atan(-ratio) / r;
+        let minus = |s: Scaled| s.times(Scaled::of(-1.0));
+        let ratio = -self.ratio(v0);
+        let slowed = if ratio.0 == 0.0 { fx128::ONE } else { atan(ratio) / ratio };
+        let thrown = minus(v0).over(Scaled::of(self.gravity));
+        let apex = thrown.times(Scaled::of_wide(slowed)).value();
         if t < apex {
-            let (sine, cosine) = (r * t).sin_cos();
-            let (tn, shrunk) = (sine / cosine, cosine - ratio * sine);
-            return (x0 - shrunk.ln() / self.k(), (v0 + vt * tn) / (fx128::ONE - ratio * tn));
+            let (height, v) = self.rise_for(v0, time);
+            return down(&[x0, minus(height)], v);
         }
-        let height = log1p(ratio * ratio) / (self.k() + self.k());
-        let (distance, v) = self.fall(fx128::ZERO, t - apex);
-        (x0 - height + distance, v)
+        // v0^2 / (2 g) less what the drag takes.
+        let height = minus(v0).times(thrown).shifted(-1).times(Scaled::of_wide(log1p_over(ratio * ratio)));
+        let (distance, v) = self.fall(Scaled::of(0.0), Scaled::of_wide(t - apex));
+        down(&[x0, minus(height), distance], v)
     }
 
     /// C of |error| <= C h^3 of RK4 at the time T after a kink at t*: the step across it sums k g^2 tau |tau| by
@@ -128,6 +174,12 @@ impl Scene for QuadraticDrag {
             time_scale_s: 1.0 / self.terminal().1.to_f64(),
             coarsest_steps: 8,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("quadratic-drag", self, &seen, end_s)
     }
 
     fn breaks_s(&self) -> Vec<f64> {

@@ -7,9 +7,13 @@ use integrator::rigid_body::Kinematics;
 use integrator::{Real, Rotation, Single, Vector};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::observation::{Observation, Quantity};
+use crate::parameters::ParameterValue;
+use crate::scene::Info;
+use crate::special::free_top::{UNSTABLE_RADIANS, has_vanishing_component};
 use crate::theory::Theory;
 
 /// The motion of a body with a fixed point.
@@ -101,6 +105,22 @@ pub(crate) fn account_of_flight(
     let momentum = v.iter().map(|&c| c * mass).collect();
     entries.push(Entry { balance: Balance::Momentum, value: momentum, conserved: false });
     entries
+}
+
+/// A free body whose phase double-double resolves, and of which no part of omega is too small to be followed.
+pub(crate) fn check_free(scene: &str, info: &Info, omega: &[f64; 3]) -> Result<(), Error> {
+    let angle = Vector3::from(*omega).norm() * info.horizon_s;
+    answerable::phase(scene, ("omega", omega), angle, info.horizon_s)?;
+    if angle <= UNSTABLE_RADIANS || !has_vanishing_component(*omega) {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        scene: scene.to_owned(),
+        parameter: "omega".to_owned(),
+        value: omega.show(),
+        expected: "a component is below 1e-130 of another, and may grow beyond it in the time of a run: make it 0"
+            .to_owned(),
+    })
 }
 
 /// Moments of inertia of a body that can exist (none exceeds the sum of the other two), and a quaternion that is not zero.

@@ -9,6 +9,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -60,7 +61,7 @@ impl Scene for SphereTorque {
         Info {
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
             equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",
-            source: "Zener 1932 (Landau-Zener), by Kummer's function",
+            source: "Zener 1932 (Landau-Zener), by power series, and by the adiabatic series of a slow turn",
             horizon_s: 2.25,
             time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
             coarsest_steps: 8,
@@ -68,7 +69,12 @@ impl Scene for SphereTorque {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("sphere-torque", [self.inertia; 3], self.attitude)
+        rigid::check("sphere-torque", [self.inertia; 3], self.attitude)?;
+        let end_s = self.info().horizon_s;
+        let gained = Vector3::from(self.torque).norm() / self.inertia * end_s;
+        let started = Vector3::from(self.omega).norm();
+        let most = if started >= gained { ("omega", &self.omega) } else { ("torque", &self.torque) };
+        answerable::phase("sphere-torque", most, (started + gained) * end_s, end_s)
     }
 
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -8,12 +8,16 @@ use integrator::methods::MethodId;
 use integrator::{Model, Real, Single, State};
 use nalgebra::{DMatrix, SVector};
 
+use crate::catalogue::answerable;
 use crate::catalogue::linear::{Linear, Parts};
+use crate::error::Error;
 use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Scene};
+use crate::special::elementary::sinc;
+use crate::special::scaled::{Scaled, exponent_of_largest, f64_times_two_to};
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
@@ -57,29 +61,64 @@ pub fn chain_motion<const N: usize>(
     v0: &[f64; N],
     t: fx128,
 ) -> (SVector<fx128, N>, SVector<fx128, N>) {
-    let (mut x, mut v) = (SVector::from([fx128::ZERO; N]), SVector::from([fx128::ZERO; N]));
+    chain_at(Scaled::of_wide(ratio), x0, v0, t)
+}
+
+/// The same; in units of the largest start, and of the time.
+fn chain_at<const N: usize>(
+    ratio: Scaled,
+    x0: &[f64; N],
+    v0: &[f64; N],
+    t: fx128,
+) -> (SVector<fx128, N>, SVector<fx128, N>) {
+    if t.0 == 0.0 {
+        let start = |values: &[f64; N]| SVector::from(values.map(fx128::lit));
+        return (start(x0), start(v0));
+    }
+    let zero = SVector::from([fx128::ZERO; N]);
+    // Displacements and velocities (times the time) from the displaced start, and from the moving one.
+    let (mut x, mut v) = ([zero; 2], [zero; 2]);
+    let (time, base) = (Scaled::of_wide(t), ratio.sqrt());
+    let units = [exponent_of_largest(x0), exponent_of_largest(v0)];
+    let start = [(x0, units[0]), (v0, units[1])];
     let weight = fx128::lit(2.0) / fx128::lit((N + 1) as f64);
     for j in 1..=N {
         let shape: [fx128; N] = std::array::from_fn(|i| sine_of_turns((i + 1) * j, N + 1));
-        let project = |values: &[f64; N]| {
-            shape.iter().zip(values).fold(fx128::ZERO, |sum, (&s, &c)| sum + s * fx128::lit(c)) * weight
-        };
-        let (a, b) = (project(x0), project(v0));
-        let w = mode_frequency(N, j, ratio);
-        let (sine, cosine) = (w * t).sin_cos();
-        let (displacement, velocity) = (a * cosine + b * sine / w, b * cosine - a * w * sine);
+        let [a, b] = start.map(|(values, unit)| {
+            let unit = |c: f64| fx128::lit(f64_times_two_to(c, -unit));
+            shape.iter().zip(values).fold(fx128::ZERO, |sum, (&s, &c)| sum + s * unit(c)) * weight
+        });
+        let phase = base.times(time).times(Scaled::of_wide(mode_frequency(N, j, fx128::ONE))).value();
+        let (sine, cosine) = phase.sin_cos();
+        let sinc = sinc(phase);
         for i in 0..N {
-            x[i] += shape[i] * displacement;
-            v[i] += shape[i] * velocity;
+            x[0][i] += shape[i] * (a * cosine);
+            v[0][i] -= shape[i] * (a * phase * sine);
+            x[1][i] += shape[i] * (b * sinc);
+            v[1][i] += shape[i] * (b * cosine);
         }
     }
-    (x, v)
+    let one = Scaled::of(1.0);
+    let [x_unit, v_unit] = units.map(|unit| one.shifted(unit));
+    let sum = |factors: [Scaled; 2], parts: [SVector<fx128, N>; 2]| {
+        SVector::from_fn(|i, _| {
+            let terms = [0, 1].map(|k| factors[k].times(Scaled::of_wide(parts[k][i])));
+            Scaled::sum(&terms)
+        })
+    };
+    (sum([x_unit, v_unit.times(time)], x), sum([x_unit.over(time), v_unit], v))
 }
 
 impl SpringChain {
+    /// k / m, 1/s^2.
+    fn ratio(&self) -> Scaled {
+        Scaled::of(self.stiffness).over(Scaled::of(self.mass))
+    }
+
     /// Angular frequency of the stiffest mode, rad/s.
     pub fn stiffest(&self) -> f64 {
-        mode_frequency(MASSES, MASSES, fx128::lit(self.stiffness) / fx128::lit(self.mass)).to_f64()
+        let of_one = Scaled::of_wide(mode_frequency(MASSES, MASSES, fx128::ONE));
+        self.ratio().sqrt().times(of_one).value().to_f64()
     }
 
     /// The matrix of x'' = S x.
@@ -121,12 +160,7 @@ impl<T: Real> Model<T> for SpringChain {
 
 impl<T: Single> Motion<T> for SpringChain {
     fn exact(&self, t: T) -> State<Self::Config> {
-        // The start needs no modes, and is where every run begins.
-        if t == T::lit(0.0) {
-            let start = |values: &[f64; MASSES]| SVector::from_fn(|i, _| T::lit(values[i]));
-            return State { q: start(&self.x0), v: start(&self.v0) };
-        }
-        let (x, v) = chain_motion(fx128::lit(self.stiffness) / fx128::lit(self.mass), &self.x0, &self.v0, t.widen());
+        let (x, v) = chain_at(self.ratio(), &self.x0, &self.v0, t.widen());
         rounded(x, v)
     }
     fn observe(&self, s: &State<Self::Config>) -> Observation {
@@ -144,6 +178,13 @@ impl Scene for SpringChain {
             time_scale_s: 1.0 / self.stiffest(),
             coarsest_steps: 4,
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let end_s = self.info().horizon_s;
+        answerable::phase("spring-chain", ("stiffness", &self.stiffness), self.stiffest() * end_s, end_s)?;
+        let seen = Motion::<f64>::observe(self, &self.exact(end_s));
+        answerable::range("spring-chain", self, &seen, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -10,6 +10,7 @@ use integrator::rigid_body::{Kinematics, RigidBody, Torque};
 use integrator::{Real, Single};
 use nalgebra::Vector3;
 
+use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
@@ -91,7 +92,11 @@ impl Scene for SymmetricTop {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("symmetric-top", self.inertia(), self.attitude)
+        rigid::check("symmetric-top", self.inertia(), self.attitude)?;
+        let [x, y, z] = self.omega;
+        let end_s = self.info().horizon_s;
+        let phase = x.hypot(y).hypot(2.0 * z) * end_s;
+        answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

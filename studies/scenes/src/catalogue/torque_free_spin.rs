@@ -70,7 +70,8 @@ impl Scene for TorqueFreeSpin {
     }
 
     fn check(&self) -> Result<(), Error> {
-        rigid::check("torque-free-spin", self.inertia, self.attitude)
+        rigid::check("torque-free-spin", self.inertia, self.attitude)?;
+        rigid::check_free("torque-free-spin", &self.info(), &self.omega)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -56,6 +56,23 @@ pub fn x_minus_sin<T: Single>(x: T) -> T {
     sum_of_terms(x * square / T::lit(6.0), |term, k| -term * square / T::lit((2.0 * k + 2.0) * (2.0 * k + 3.0)))
 }
 
+/// sin(x) / x, 1 at 0.
+pub fn sinc<T: Single>(x: T) -> T {
+    // x^2 would vanish long before x does.
+    if x.abs() < T::lit(1e-40) { T::lit(1.0) } else { x.sin_cos().0 / x }
+}
+
+/// (1 - cos x) / x^2 = sin^2(x/2) / (2 (x/2)^2), 1/2 at 0.
+pub fn versine_over_square<T: Single>(x: T) -> T {
+    let half = sinc(x * T::lit(0.5));
+    half * half * T::lit(0.5)
+}
+
+/// ln(1 + x) / x, 1 at 0.
+pub fn log1p_over<T: Single>(x: T) -> T {
+    if x == T::lit(0.0) { T::lit(1.0) } else { log1p(x) / x }
+}
+
 /// sinh x = (g + g / (1 + g)) / 2 with g = e^x - 1.
 pub fn sinh<T: Single>(x: T) -> T {
     let growth = expm1(x.abs());

@@ -17,6 +17,7 @@ use super::elementary::asinh;
 use super::elliptic::{complete_pi, f_of, pi_of};
 use super::expansion::Expansion;
 use super::jacobi::{Jacobi, Modulus, parity};
+use super::scaled::{exponent_of_largest, f64_times_two_to, times_two_to, unit_quaternion};
 
 /// A torque-free rigid body, ready to be evaluated at any time.
 ///
@@ -27,8 +28,9 @@ use super::jacobi::{Jacobi, Modulus, parity};
 pub struct FreeTop {
     /// Attitude at t = 0, body to world.
     attitude0: Rotation<fx128>,
-    /// Angular velocity at t = 0 in the body frame, rad/s.
+    /// Angular velocity at t = 0 in the body frame, in units of 2^rate_unit rad/s.
     omega0: Vector3<f64>,
+    rate_unit: i64,
     /// None if omega is constant.
     precession: Option<Precession>,
 }
@@ -37,20 +39,39 @@ impl FreeTop {
     /// Principal moments (kg m^2, any order, positive), attitude (w, x, y, z) normalised in double-double, and angular
     /// velocity in the body frame (rad/s). Inputs that are not finite, or moments that are not positive, give NaN.
     pub fn new(inertia: [f64; 3], attitude0: [f64; 4], omega_body0: [f64; 3]) -> Self {
+        // The motion depends on ratios: the largest moment and omega are near 1 in what follows, and f32 holds all of it.
+        let [mass_unit, rate_unit] = [inertia, omega_body0].map(|sizes| exponent_of_largest(&sizes));
+        let inertia = inertia.map(|i| f64_times_two_to(i, -mass_unit));
+        let omega_body0 = omega_body0.map(|w| {
+            let w = f64_times_two_to(w, -rate_unit);
+            if w.abs() < VANISHING { 0.0 } else { w }
+        });
         let [w0, w1, w2] = omega_body0;
         let couples = |i: usize, j: usize, a: f64, b: f64| inertia[i] != inertia[j] && a != 0.0 && b != 0.0;
         // l x omega = 0 exactly: a principal axis (of possibly equal moments).
         let wobbles = couples(0, 1, w0, w1) || couples(1, 2, w1, w2) || couples(2, 0, w2, w0);
         Self {
-            attitude0: Rotation::from_wxyz(attitude0.map(fx128::from_f64)),
+            attitude0: unit_quaternion(attitude0),
             omega0: Vector3::from(omega_body0),
+            rate_unit,
             precession: wobbles.then(|| Precession::new(inertia, omega_body0)),
         }
     }
 
     /// Attitude (body to world) and angular velocity in the body frame (rad/s) at time t (s).
     pub fn at<T: Single>(&self, t: T) -> (Rotation<T>, Vector3<T>) {
-        let t = t.widen();
+        let t = times_two_to(t.widen(), self.rate_unit);
+        if T::EPSILON > f64::EPSILON {
+            // In f32 the elliptic integrals would underflow beside the separatrix.
+            let (q, omega) = self.turned_at::<f64>(t);
+            return (narrow(widened(q)), omega.map(|w| T::lit(f64_times_two_to(w, self.rate_unit))));
+        }
+        let (q, omega) = self.turned_at::<T>(t);
+        (q, omega.map(|w| T::narrow(times_two_to(w.widen(), self.rate_unit))))
+    }
+
+    /// The same at a time in units of 2^-rate_unit s.
+    fn turned_at<T: Single>(&self, t: fx128) -> (Rotation<T>, Vector3<T>) {
         let Some(precession) = &self.precession else {
             let attitude = self.attitude0 * Rotation::exp(self.omega0.map(fx128::from_f64) * t);
             return (narrow(attitude), self.omega0.map(T::lit));
@@ -64,7 +85,7 @@ impl FreeTop {
         match &self.precession {
             None => fx128::ZERO,
             Some(p) if p.modulus.mc.0 == 0.0 => fx128::INFINITY,
-            Some(p) => fx128::from_f64(4.0) * p.modulus.quarter_period() / p.lambda,
+            Some(p) => times_two_to(fx128::from_f64(4.0) * p.modulus.quarter_period() / p.lambda, -self.rate_unit),
         }
     }
 
@@ -72,6 +93,23 @@ impl FreeTop {
     pub fn complementary_parameter(&self) -> fx128 {
         self.precession.as_ref().map_or(fx128::ONE, |p| p.modulus.mc)
     }
+}
+
+/// A component of omega below this part of the largest is taken for zero: its square would lose bits. It grows to a size that
+/// counts only after [`UNSTABLE_RADIANS`] about the unstable axis.
+const VANISHING: f64 = 1e-130;
+
+/// Radians about the intermediate axis after which [`VANISHING`] may have grown to the rounding of f64: ln(1e130 2^-60).
+pub(crate) const UNSTABLE_RADIANS: f64 = 257.0;
+
+/// Whether a component of omega is taken for zero.
+pub(crate) fn has_vanishing_component(omega: [f64; 3]) -> bool {
+    let unit = exponent_of_largest(&omega);
+    omega.iter().any(|&w| w != 0.0 && f64_times_two_to(w, -unit).abs() < VANISHING)
+}
+
+fn widened(q: Rotation<f64>) -> Rotation<fx128> {
+    Rotation { w: q.w.widen(), v: q.v.map(Single::widen) }
 }
 
 fn narrow<T: Single>(q: Rotation<fx128>) -> Rotation<T> {

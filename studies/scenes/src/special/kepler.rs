@@ -29,7 +29,13 @@ const MOST_STEPS: usize = 60;
 /// J. M. A. Danby, Fundamentals of Celestial Mechanics (1988), section 6.6.
 pub fn eccentric_anomaly<T: Single>(mean_anomaly: fx128, eccentricity: T) -> EccentricAnomaly<T> {
     let two_pi = fx128::PI + fx128::PI;
-    let reduced = mean_anomaly - (mean_anomaly / two_pi).round() * two_pi;
+    let reduced = if mean_anomaly.0.abs() < 1e6 {
+        mean_anomaly - (mean_anomaly / two_pi).round() * two_pi
+    } else {
+        // Their sine and cosine are reduced with all digits of pi.
+        let (sine, cosine) = mean_anomaly.sin_cos();
+        sine.atan2(cosine)
+    };
     let (e, mean) = (eccentricity, T::narrow(Real::abs(reduced)));
     let mut angle = T::lit(upper_bound(mean.to_f64(), e.to_f64()));
     for _ in 0..MOST_STEPS {

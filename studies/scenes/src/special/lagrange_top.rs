@@ -7,10 +7,13 @@
 use faer::fx128;
 use integrator::real::{Real, Single};
 use integrator::rotation::Rotation;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use super::elliptic::{complete_pi, f_of, pi_of};
 use super::jacobi::{Jacobi, Modulus};
+use super::scaled::{Scaled, exponent_of_largest, times_two_to, unit_quaternion};
+use super::symmetric_top::SymmetricTop;
+use super::top_series::{Pull, Spherical, halves, turn, turned};
 
 /// A heavy top with moments (I1, I1, I3) about its fixed point and its centre of mass on the body's third axis.
 ///
@@ -19,15 +22,35 @@ use super::jacobi::{Jacobi, Modulus};
 /// (sqrt((1+u)/2) cos p, sqrt((1-u)/2) cos d, sqrt((1-u)/2) sin d, sqrt((1+u)/2) sin p), and p and d advance by L3 (1/I3 - 1/I1) t / 2 each
 /// way and an integral of the third kind. All in double-double, so that f64 results are the exact ones rounded.
 ///
-/// Fails (NaN) for mgl <= 0, and where the axis passes exactly through the vertical while it nutates; near it, digits are
-/// lost in proportion to 1 / sin^2 theta.
+/// Where the axis passes the vertical, or within 1e-6 of it in 1 - |u|, the half-angles are singular: there the motion is
+/// summed by power series over one nutation, and the nutations before it turn p and d by as much each; see [`super::top_series`].
 #[derive(Clone, Copy, Debug)]
 pub struct LagrangeTop {
     attitude0: Rotation<fx128>,
+    /// In units of 2^unit rad/s, as all rates below.
     omega0: Vector3<fx128>,
-    /// None for a top that sleeps upright or hangs: a steady rotation.
-    nutation: Option<Nutation>,
+    unit: i64,
+    motion: Motion,
 }
+
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    /// A top that sleeps upright or hangs.
+    Steady,
+    /// Gravity is below the rounding.
+    Free(SymmetricTop),
+    Nutating(Nutation),
+    NearVertical {
+        pull: Pull,
+        relative_spin: fx128,
+        period: fx128,
+    },
+}
+
+/// Below this part of the square of the fastest rate, m g l / I1 changes nothing while phases are resolved.
+const WEAK: f64 = 1e-48;
+/// Nearest 1 - |u| of the closed form: half of the digits of double-double are left.
+const NEAR: f64 = 1e-6;
 
 /// One of the half-angles p and d.
 #[derive(Clone, Copy, Debug)]
@@ -61,48 +84,163 @@ impl LagrangeTop {
     /// I1, I3 (kg m^2), m g l (N m, positive), attitude (w, x, y, z) normalised in double-double, omega in the body
     /// frame (rad/s). Gravity points along -z of the world.
     pub fn new(inertia_1: f64, inertia_3: f64, mgl: f64, attitude0: [f64; 4], omega_body0: [f64; 3]) -> Self {
-        let q = Rotation::from_wxyz(attitude0.map(fx128::from_f64));
-        let omega = Vector3::from(omega_body0).map(fx128::from_f64);
+        let q = unit_quaternion(attitude0);
+        let pull = Scaled::of(mgl).over(Scaled::of(inertia_1));
+        let of_omega = if omega_body0 == [0.0; 3] { i64::MIN } else { exponent_of_largest(&omega_body0) };
+        let unit = of_omega.max(pull.sqrt().exponent());
+        let omega = Vector3::from(omega_body0).map(|w| times_two_to(fx128::from_f64(w), -unit));
+        let gravity = pull.shifted(-2 * unit).value();
+        let ratio = Scaled::of(inertia_3).over(Scaled::of(inertia_1)).value();
+
         let tilted = (q.v.x.0 != 0.0 || q.v.y.0 != 0.0) && (q.w.0 != 0.0 || q.v.z.0 != 0.0);
-        let nutates = tilted || omega.x.0 != 0.0 || omega.y.0 != 0.0;
-        let [i1, i3, mgl] = [inertia_1, inertia_3, mgl].map(fx128::from_f64);
-        Self { attitude0: q, omega0: omega, nutation: nutates.then(|| Nutation::new(i1, i3, mgl, q, omega)) }
+        let motion = if !tilted && omega.x.0 == 0.0 && omega.y.0 == 0.0 {
+            Motion::Steady
+        } else if gravity.0 < WEAK {
+            Motion::Free(SymmetricTop::new(inertia_1, inertia_3, attitude0, omega_body0))
+        } else {
+            nutating(ratio, gravity, q, omega)
+        };
+        Self { attitude0: q, omega0: omega, unit, motion }
     }
 
     /// Attitude (body to world) and angular velocity in the body frame (rad/s) at time t (s).
     pub fn at<T: Single>(&self, t: T) -> (Rotation<T>, Vector3<T>) {
-        let t = t.widen();
-        let (attitude, omega) = match &self.nutation {
-            None => (self.attitude0 * Rotation::exp(self.omega0 * t), self.omega0),
-            Some(nutation) => nutation.at(t, self.omega0.z),
+        if let Motion::Free(top) = &self.motion {
+            return top.at(t);
+        }
+        let t = times_two_to(t.widen(), self.unit);
+        let (attitude, omega) = match &self.motion {
+            Motion::Nutating(nutation) => nutation.at(t, self.omega0.z),
+            Motion::NearVertical { pull, relative_spin, period } => {
+                self.near_vertical(pull, *relative_spin, *period, t)
+            }
+            _ => (self.attitude0 * Rotation::exp(self.omega0 * t), self.omega0),
         };
-        (Rotation { w: T::narrow(attitude.w), v: attitude.v.map(T::narrow) }, omega.map(T::narrow))
+        let omega = omega.map(|w| T::narrow(times_two_to(w, self.unit)));
+        (Rotation { w: T::narrow(attitude.w), v: attitude.v.map(T::narrow) }, omega)
+    }
+
+    /// By power series from the start, or from the start of the nutation that is on.
+    fn near_vertical(
+        &self,
+        pull: &Pull,
+        relative_spin: fx128,
+        period: fx128,
+        t: fx128,
+    ) -> (Rotation<fx128>, Vector3<fx128>) {
+        let start = Spherical { attitude: self.attitude0, omega: self.omega0.xy() };
+        let whole = if period.is_finite() { (t / period - fx128::from_f64(0.5)).round() } else { fx128::ZERO };
+        let now = if whole.0 < 2.0 {
+            pull.after(start, t)
+        } else {
+            let mut at = pull.after(start, t - whole * period);
+            let [p, d] = self.gained_by_a_nutation(pull, period).map(|angle| angle * whole);
+            let [sum, difference] = halves(at.attitude);
+            let (sum, difference) = (turn(sum, p), turn(difference, d));
+            at.attitude = Rotation { w: sum.x, v: Vector3::new(difference.x, difference.y, sum.y) };
+            at
+        };
+        // The body turns about its axis in the frame of the series.
+        let angle = relative_spin * t;
+        let (sine, cosine) = Real::sin_cos(angle * fx128::from_f64(0.5));
+        let spin = Rotation { w: cosine, v: Vector3::new(fx128::ZERO, fx128::ZERO, sine) };
+        let across = turn(now.omega, -angle);
+        (now.attitude * spin, Vector3::new(across.x, across.y, self.omega0.z))
+    }
+
+    /// What the half-angles p and d gain in a nutation, each seen where its part of the quaternion is large: at the start
+    /// or half a nutation later.
+    fn gained_by_a_nutation(&self, pull: &Pull, period: fx128) -> [fx128; 2] {
+        let half = period * fx128::from_f64(0.5);
+        let mut at = Spherical { attitude: self.attitude0, omega: self.omega0.xy() };
+        let seen = [0, 1, 2, 3].map(|_| {
+            let here = halves(at.attitude);
+            at = pull.after(at, half);
+            here
+        });
+        [0, 1].map(|i| {
+            let size = |half: Vector2<fx128>| half.x.0.hypot(half.y.0);
+            let from = if size(seen[0][i]) >= size(seen[1][i]) { 0 } else { 1 };
+            turned([seen[from + 2][i], seen[from][i]])
+        })
     }
 }
 
-impl Nutation {
-    fn new(i1: fx128, i3: fx128, mgl: fx128, q: Rotation<fx128>, omega: Vector3<fx128>) -> Self {
-        let (one, two, half) = (fx128::ONE, fx128::from_f64(2.0), fx128::from_f64(0.5));
+/// The closed form, or where it is singular the power series. `ratio` is I3 / I1, `gravity` m g l / I1.
+fn nutating(ratio: fx128, gravity: fx128, q: Rotation<fx128>, omega: Vector3<fx128>) -> Motion {
+    let start = Start::new(ratio, q, omega);
+    let roots = start.roots(gravity);
+    let [low, high, _] = roots;
+    if (start.up + low).0 >= NEAR && (start.down - high).0 >= NEAR {
+        return Motion::Nutating(Nutation::new(ratio, gravity, q, omega));
+    }
+    let (modulus, kappa) = modulus_and_rate(roots, gravity);
+    let axial = ratio * omega.z;
+    Motion::NearVertical {
+        pull: Pull { gravity, axial },
+        relative_spin: omega.z - axial,
+        period: modulus.quarter_period() * fx128::from_f64(2.0) / kappa,
+    }
+}
+
+/// The height u of the axis at the start, and what stays of the motion.
+struct Start {
+    /// 1 + u and 1 - u, without the subtraction.
+    up: fx128,
+    down: fx128,
+    u: fx128,
+    u_rate: fx128,
+    /// L_3 / I1, L_z / I1, and the square of omega across the axis.
+    axial: fx128,
+    vertical: fx128,
+    across: fx128,
+}
+
+impl Start {
+    fn new(ratio: fx128, q: Rotation<fx128>, omega: Vector3<fx128>) -> Self {
+        let (one, two) = (fx128::ONE, fx128::from_f64(2.0));
         let Rotation { w, v } = q;
-        // 1 + u and 1 - u at the start, without the subtraction; the world's vertical in the body frame.
         let (up, down) = (two * (w * w + v.z * v.z), two * (v.x * v.x + v.y * v.y));
         let (gx, gy) = vertical_in_body(q);
         let u = if up.0 < down.0 { up - one } else { one - down };
-        let u_rate = gx * omega.y - gy * omega.x;
-        let axial = i3 * omega.z / i1;
-        let vertical = gx * omega.x + gy * omega.y + axial * u;
+        let axial = ratio * omega.z;
+        Self {
+            up,
+            down,
+            u,
+            u_rate: gx * omega.y - gy * omega.x,
+            axial,
+            vertical: gx * omega.x + gy * omega.y + axial * u,
+            across: omega.x * omega.x + omega.y * omega.y,
+        }
+    }
 
-        let lift = mgl * two / i1;
-        let across = omega.x * omega.x + omega.y * omega.y;
-        // u'^2 = f0 + f1 v + f2 v^2 + lift v^3 with v = u(t) - u(0): the constants do not cancel.
+    /// Of u'^2 = f0 + f1 v + f2 v^2 + lift v^3 with v = u(t) - u(0): the constants do not cancel.
+    fn roots(&self, gravity: fx128) -> [fx128; 3] {
+        let Self { up, down, u, u_rate, axial, vertical, across } = *self;
+        let (two, lift) = (fx128::from_f64(2.0), gravity + gravity);
         let f0 = u_rate * u_rate;
         let f1 = two * axial * (vertical - axial * u) - two * u * across - lift * up * down;
         let f2 = lift * two * u - across - axial * axial;
-        let [low, high, top] = roots_about_start(f0 / lift, f1 / lift, f2 / lift);
+        roots_about_start(f0 / lift, f1 / lift, f2 / lift)
+    }
+}
 
-        let (swing, span) = (high - low, top - low);
-        let modulus = Modulus::new((top - high) / span);
-        let kappa = Real::sqrt(mgl * span / (two * i1));
+/// The modulus and kappa = sqrt(m g l (u3 - u1) / (2 I1)).
+fn modulus_and_rate([low, high, top]: [fx128; 3], gravity: fx128) -> (Modulus, fx128) {
+    let span = top - low;
+    (Modulus::new((top - high) / span), Real::sqrt(gravity * span * fx128::from_f64(0.5)))
+}
+
+impl Nutation {
+    fn new(ratio: fx128, gravity: fx128, q: Rotation<fx128>, omega: Vector3<fx128>) -> Self {
+        let (one, half) = (fx128::ONE, fx128::from_f64(0.5));
+        let Rotation { w, v } = q;
+        let start = Start::new(ratio, q, omega);
+        let roots = start.roots(gravity);
+        let ([low, high, _], (modulus, kappa)) = (roots, modulus_and_rate(roots, gravity));
+        let Start { up, down, u_rate, axial, vertical, .. } = start;
+        let swing = high - low;
         let (above, below) = (up + low, down - low);
         let (sn, cn) = if swing.0 == 0.0 {
             (fx128::ZERO, one)
@@ -110,7 +248,7 @@ impl Nutation {
             let sine = Real::sqrt(-low / swing);
             (if u_rate.0 < 0.0 { -sine } else { sine }, Real::sqrt(high / swing))
         };
-        let spin = i3 * omega.z * (one / i3 - one / i1) * half;
+        let spin = omega.z * (one - ratio) * half;
         let half_angle = |start: fx128, spin: fx128, rate: fx128, distance: fx128, nc: fx128| {
             let factor = rate * half / (kappa * distance);
             let complete = factor * complete_pi(nc, modulus.mc);
@@ -171,7 +309,7 @@ fn vertical_in_body(Rotation { w, v }: Rotation<fx128>) -> (fx128, fx128) {
 fn roots_about_start(f0: fx128, f1: fx128, f2: fx128) -> [fx128; 3] {
     let half = fx128::from_f64(0.5);
     let mut top = fx128::from_f64(1.0 + f0.0.abs().max(f1.0.abs()).max(f2.0.abs()));
-    for _ in 0..200 {
+    for _ in 0..400 {
         let value = ((top + f2) * top + f1) * top + f0;
         let slope = (fx128::from_f64(3.0) * top + f2 + f2) * top + f1;
         let next = top - value / slope;

@@ -3,6 +3,7 @@
 //! Everything takes the complementary parameter mc = 1 - m of elliptic functions and is written so that nothing cancels:
 //! f64 results are good to a few eps, double-double results to about 1e-30, up to the conditioning of the question.
 
+mod adiabatic;
 pub mod carlson;
 pub mod elementary;
 pub mod elliptic;
@@ -12,5 +13,7 @@ pub mod jacobi;
 pub mod kepler;
 pub mod kummer;
 pub mod lagrange_top;
+pub(crate) mod scaled;
 pub mod sphere_torque;
 pub mod symmetric_top;
+mod top_series;
