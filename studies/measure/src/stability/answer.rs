@@ -95,7 +95,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
             theory.unwrap_or(f64::INFINITY)
         }
     };
-    if let Some(trial) = trial {
+    if let Some(trial) = trial.filter(|trial| trial.sees) {
         line(format!(
             "  judged over {} steps: growth of less than {:.1e} per step would not show",
             trial.patience,

@@ -309,31 +309,51 @@ fn by_budget(asked: &Asked<'_>, ways: &[(Candidate, Precision)]) -> Vec<Entry> {
             .map(|(way, steps)| (way, best_of_halvings(asked, way, steps)))
             .collect(),
     );
-    // A step costs what its length makes of it, and a timing is not the same twice: those that came out too dear take fewer steps.
     for (entry, first) in entries.iter_mut().zip(first) {
-        let way = (entry.candidate, entry.precision);
-        let mut dearer = 1.0;
-        for _ in 0..CORRECTIONS {
-            let over = entry.found.as_ref().ok().and_then(|pick| over_budget(asked, pick)).unwrap_or(1.0);
-            if over <= 1.0 {
-                break;
-            }
-            dearer *= RESERVE * over;
-            let again = best_of_halvings(asked, way, affordable(asked, first, dearer));
-            let mut one = timed(asked, vec![(way, again)]);
-            entry.found = one.remove(0).found;
-        }
-        if entry.found.as_ref().ok().and_then(|pick| over_budget(asked, pick)).is_some_and(|over| over > 1.0) {
-            entry.found = Err(Search::OverBudget);
-        }
+        within_budget(asked, entry, first);
     }
     entries
 }
 
-/// How often a step that came out too dear is corrected.
+/// How often the number of steps is corrected by the time that they took.
 const CORRECTIONS: u32 = 4;
-/// Part by which a correction goes below the budget, so that the next timing meets it too.
+/// Part by which a correction stays below the budget, so that the next timing meets it too.
 const RESERVE: f64 = 1.02;
+/// A cost above this part of the budget uses it up.
+const USED: f64 = 0.9;
+
+/// A step costs what its length makes of it, and a timing is not the same twice: what came out too dear takes fewer steps, what came
+/// out too cheap more. The best that kept the budget counts.
+fn within_budget(asked: &Asked<'_>, entry: &mut Entry, first: Option<Cost>) {
+    let way = (entry.candidate, entry.precision);
+    let over = |found: &Result<Pick, Search>| found.as_ref().ok().and_then(|pick| over_budget(asked, pick));
+    let mut dearer = RESERVE;
+    let mut kept: Option<Pick> = None;
+    for correction in 0..=CORRECTIONS {
+        let Some(over) = over(&entry.found) else { break };
+        if let Ok(pick) = &entry.found
+            && over <= 1.0
+        {
+            let error = |pick: &Pick| pick.tried.error.unwrap_or(f64::INFINITY);
+            kept = Some(kept.filter(|best| error(best) <= error(pick)).unwrap_or(*pick));
+            let is_halved = 4 * pick.tried.steps < 3 * affordable(asked, first, dearer);
+            if over >= USED || is_halved {
+                break;
+            }
+        }
+        if correction < CORRECTIONS {
+            dearer *= RESERVE * over;
+            let again = best_of_halvings(asked, way, affordable(asked, first, dearer));
+            entry.found = timed(asked, vec![(way, again)]).remove(0).found;
+        }
+    }
+    let is_over = over(&entry.found).is_some_and(|over| over > 1.0);
+    if let Some(kept) = kept {
+        entry.found = Ok(kept);
+    } else if is_over {
+        entry.found = Err(Search::OverBudget);
+    }
+}
 
 /// Cost over budget, if the cost is known.
 pub(super) fn over_budget(asked: &Asked<'_>, pick: &Pick) -> Option<f64> {

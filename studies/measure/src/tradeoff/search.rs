@@ -82,7 +82,7 @@ pub const FINER: [f64; 8] = [1.04, 1.13, 1.27, 1.41, 1.62, 2.0, 2.83, 4.0];
 /// The same for a long run.
 const FINER_LONG: [f64; 2] = [1.41, 2.0];
 /// A run of more steps is a long one.
-const LONG: u64 = 1 << 20;
+const LONG: u64 = 1 << 18;
 /// Runs up to this length are watched at every step from the beginning; longer ones only where their samples keep the error.
 const SHORT: u64 = 1 << 12;
 /// How finely the number of steps is found: one part in so many, or one step.
@@ -167,7 +167,8 @@ pub fn search(need: &Need<'_>, candidate: Candidate, precision: Precision) -> Se
         if !kept && is_stalled(&doubled, least, need.truth.scale()) {
             return Search::Never { least: least.map(|(_, least)| least), searched };
         }
-        let about = extrapolated(&doubled, need.error, candidate);
+        let is_converging = tried.error.is_some_and(|error| error < CONVERGING * need.truth.scale());
+        let about = extrapolated(&doubled, need.error, candidate).filter(|_| is_converging);
         let is_hopeless = about.is_some_and(|about| about > 2.0 * most as f64);
         if !kept && (searched >= most || is_hopeless) || searched >= 4 * most {
             return Search::TooMany { about: about.filter(|_| !kept), least: least.map(|(_, least)| least), searched };
