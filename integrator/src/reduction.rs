@@ -3,7 +3,7 @@
 //! M. H. Payne, R. N. Hanek, Radian reduction for trigonometric functions, SIGNUM Newsletter 18 (1983) 19-24: only those bits of
 //! 2 / pi are multiplied that do not make whole turns of the angle.
 
-use crate::real::DoubleDouble;
+use qd::Quad as DoubleDouble;
 
 /// Angles from here on are reduced here: 2^55.
 pub(crate) const LARGE: f64 = 36_028_797_018_963_968.0;

@@ -86,9 +86,11 @@ pub fn counts<'a>(claims: impl IntoIterator<Item = &'a Claim>) -> Counts {
     })
 }
 
-/// The exit code of a program that made these claims: 1 if any is broken, else 0. An untested claim breaks nothing.
-pub fn exit_code(claims: &[Claim]) -> u8 {
-    u8::from(claims.iter().any(|claim| claim.verdict == Verdict::Broken))
+/// The exit code of a program that made these claims: 1 if any is broken, else 0. A run of everything has to hold everything:
+/// with `is_full`, a claim that was not tested and a run without claims are 1, too.
+pub fn exit_code(claims: &[Claim], is_full: bool) -> u8 {
+    let Counts { holds, broken, not_tested } = counts(claims);
+    u8::from(broken > 0 || is_full && (holds == 0 || not_tested > 0))
 }
 
 #[cfg(test)]
@@ -102,9 +104,17 @@ mod tests {
 
     #[test]
     fn only_a_broken_claim_sets_the_exit_code() {
-        assert_eq!(exit_code(&[]), 0);
-        assert_eq!(exit_code(&[claim(Verdict::Holds), claim(Verdict::NotTested)]), 0);
-        assert_eq!(exit_code(&[claim(Verdict::Holds), claim(Verdict::Broken), claim(Verdict::Holds)]), 1);
+        assert_eq!(exit_code(&[], false), 0);
+        assert_eq!(exit_code(&[claim(Verdict::Holds), claim(Verdict::NotTested)], false), 0);
+        assert_eq!(exit_code(&[claim(Verdict::Holds), claim(Verdict::Broken), claim(Verdict::Holds)], false), 1);
+    }
+
+    // Fails if: a full run is green that has claimed nothing, or has left a claim untested.
+    #[test]
+    fn a_full_run_holds_everything_it_claims() {
+        assert_eq!(exit_code(&[claim(Verdict::Holds)], true), 0);
+        assert_eq!(exit_code(&[], true), 1);
+        assert_eq!(exit_code(&[claim(Verdict::Holds), claim(Verdict::NotTested)], true), 1);
     }
 
     #[test]

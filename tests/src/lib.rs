@@ -3,6 +3,7 @@
 pub mod chromium;
 mod decimal;
 mod difference;
+pub mod invariants;
 pub mod programs;
 pub mod reference;
 pub mod table;

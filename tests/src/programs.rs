@@ -73,10 +73,18 @@ pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
 /// claims, nor that study's section of the page.
 ///
 /// # Panics
-/// If the section has no end.
+/// If the section has no end, or the manifest is none.
 pub fn untimed(mut files: BTreeMap<String, Vec<u8>>) -> BTreeMap<String, Vec<u8>> {
     let timed = |name: &str| name.starts_with("tradeoff") || name.starts_with("work-time");
     files.retain(|name, _| name == "tradeoff-claims.csv" || !timed(name));
+    // Its rows are sealed in the manifest.
+    if let Some(manifest) = files.get_mut("manifest.json") {
+        let mut content: serde_json::Value = serde_json::from_slice(manifest).expect("a manifest");
+        if let Some(rows) = content["rows"].as_object_mut() {
+            rows.retain(|name, _| !timed(name));
+        }
+        *manifest = content.to_string().into_bytes();
+    }
     if let Some(page) = files.get_mut("index.html") {
         let content = text(page);
         if let Some(start) = content.find("<section id=\"tradeoff\"") {

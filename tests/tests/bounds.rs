@@ -259,7 +259,7 @@ fn rows_that_would_be_proposed_and_are_not_there_are_missing() {
     found.sort_by_cached_key(Row::key);
     // Mutants too: what is added again is what was there.
     assert_eq!(found, without);
-    let audit = audit::Audit { findings: vec![], missing: found, uncovered: vec![] };
+    let audit = audit::Audit { findings: vec![], missing: found, uncovered: vec![], unnamed: vec![] };
     assert!(!audit.is_good() && audit.text().starts_with("missing: "), "{}", audit.text());
     assert!(missing(&bounds.rows).is_empty());
 }
@@ -296,6 +296,32 @@ fn the_audit_sees_what_is_vacuous_and_what_is_too_tight() {
     assert!(broken.judged.is_broken() && broken.is_flagged());
     assert!(found(&|row| row.high = row.measured * (1.0 + 1e-9), x * (1.0 + 1e-8)).tight);
     assert!(!found(&|row| row.high = row.measured * (1.0 + 1e-7), x * (1.0 + 1e-8)).tight);
+}
+
+// Fails if: a factor is taken at its word, a bound from 0 passes with one, or a number of theory's may be any.
+#[test]
+fn the_audit_sees_loose_factors_stale_numbers_and_mutants_that_no_row_names() {
+    let judged = judged(&committed(), is_position_of_rk4);
+    let x = judged[0].row.measured;
+    let found = |reason: &str, bounds: [f64; 2], measured: f64, noise: f64| {
+        let mut one = judged[0].clone();
+        (one.row.low, one.row.high, one.row.measured) = (bounds[0], bounds[1], measured);
+        one.row.reason = reason.to_owned();
+        audit::finding(one, Some(x * (1.0 + noise)), f64::EPSILON)
+    };
+    let loose = |reason: &str, bounds: [f64; 2], noise: f64| found(reason, bounds, x, noise).loose;
+    assert!(!loose("measured x 1.05: C h^4", [x / 1.05, x * 1.05], 0.0));
+    assert!(loose("measured x 2: C h^4", [x / 2.0, x * 2.0], 0.0));
+    assert!(loose("measured x 1.05, from 0: C h^4", [0.0, x * 1.05], 0.0));
+    assert!(loose("measured x 3: rounding", [x / 3.0, x * 3.0], 1e-9), "what is said to be rounding is not");
+    assert!(!loose("measured x 3, from 0: rounding", [0.0, x * 3.0], 0.5));
+    assert!(loose("measured x 4, from 0: rounding", [0.0, x * 4.0], 0.5));
+    assert!(!found("theory: e", [0.0, 2.0 * x], x, 0.0).stale);
+    assert!(found("theory: e", [0.0, 2.0 * x], 2.0 * x, 0.0).stale);
+    let mut rows = committed().rows;
+    assert!(audit::unnamed(&rows).is_empty());
+    rows.iter_mut().for_each(|row| row.mutant = String::new());
+    assert_eq!(audit::unnamed(&rows).len(), gate::mutants::Mutant::ALL.len());
 }
 
 // Fails if: a committed row proves little without saying why, or would break by rounding.

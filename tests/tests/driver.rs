@@ -123,6 +123,42 @@ fn advance_and_integrate_give_the_same_bits() {
     assert_eq!(drive::advance(&Rk4, &Tumbling, tumbling(), 0.5, 0), Ok(tumbling()));
 }
 
+/// A ball over a floor, thrown back with the speed that it arrives with; with `breaks`, the floor makes it NaN.
+struct Ball {
+    breaks: bool,
+}
+
+impl Model<f64> for Ball {
+    type Config = Vector1<f64>;
+    fn rate(&self, _t: f64, _s: &State<Vector1<f64>>) -> Vector1<f64> {
+        Vector1::new(-1.0)
+    }
+    fn contact(&self, _before: &State<Vector1<f64>>, after: State<Vector1<f64>>) -> State<Vector1<f64>> {
+        let back = if self.breaks { f64::NAN } else { -1.0 };
+        if after.q.x < 0.0 && after.v.x < 0.0 { State { q: after.q, v: after.v * back } } else { after }
+    }
+}
+
+// Fails if: either driver, or the search for the step that failed, leaves out the contact.
+#[test]
+fn both_drivers_let_the_model_change_the_state_after_every_step() {
+    let start = State { q: Vector1::new(0.5), v: Vector1::new(0.0) };
+    for steps in STEPS.into_iter().chain([1000]) {
+        let mut lowest = f64::INFINITY;
+        let ball = Ball { breaks: false };
+        let advanced = drive::advance(&ExplicitEuler, &ball, start, 0.015625, steps).expect("finite");
+        let see = |_, s: &State<Vector1<f64>>| lowest = lowest.min(s.q.x);
+        assert_eq!(Ok(advanced), drive::integrate(&ExplicitEuler, &ball, start, 0.015625, steps, see));
+        // A bounce is seen within the step in which it falls: at most |v| h below the floor, and |v| stays below 2.
+        assert!(lowest > -2.0 * 0.015625, "{steps} steps: {lowest}");
+    }
+    let ball = Ball { breaks: true };
+    let failed = drive::integrate(&ExplicitEuler, &ball, start, 0.015625, 1000, |_, _| ());
+    // x = (1 - t^2) / 2 + t h / 2 meets the floor at t = 1 + h / 2, in step 65.
+    assert_eq!(failed.expect_err("it meets the floor").step, 65);
+    assert_eq!(drive::advance(&ExplicitEuler, &ball, start, 0.015625, 1000), failed);
+}
+
 // Fails if: SETTLE_EVERY steps are not followed by a settling; settled changes the position, or the attitude's direction.
 #[test]
 fn settling_after_64_steps_changes_the_norm_and_nothing_else() {

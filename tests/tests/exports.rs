@@ -7,6 +7,7 @@ use std::process::Output;
 
 use measure::convergence::Row;
 use reports::{Claim, Verdict};
+use sha2::{Digest, Sha256};
 use tempfile::TempDir;
 use verification::programs::{PROGRAMS, assert_same, files, program, run, text, untimed};
 
@@ -208,6 +209,66 @@ fn json_tells_machines_what_the_files_say() {
     assert_eq!(studies[0]["study"], "convergence");
 }
 
+/// Writes the manifest as if a run had written these rows.
+fn sealed(directory: &Path, name: &str, bytes: &[u8]) {
+    let path = directory.join("manifest.json");
+    let text = fs::read_to_string(&path).expect("written");
+    let mut manifest: serde_json::Value = serde_json::from_str(&text).expect("what was written");
+    manifest["rows"][name]["sha256"] = format!("{:x}", Sha256::digest(bytes)).into();
+    fs::write(&path, serde_json::to_string_pretty(&manifest).expect("JSON")).expect("writable");
+}
+
+// Fails if: rows that are not those of the manifest are judged, or the message lacks the file and the line.
+#[test]
+fn rows_that_no_run_wrote_or_another_run_wrote_are_refused() {
+    let (whole, _) = report(&["--quick", "--scene", "constant-force", "--method", "rk4"]);
+    let (other, _) = report(&["--quick", "--scene", "constant-force", "--method", "velocity-verlet"]);
+    let good = files(whole.path());
+    let refused = |name: &str, bytes: &[u8], expected: &str| {
+        fs::write(whole.path().join(name), bytes).expect("writable");
+        let (out, output) = report(&["--from", path(whole.path())]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{name}, {expected}: {message}");
+        assert!(message.starts_with("error: ") && message.contains(expected), "{name}, {expected}: {message}");
+        assert!(files(out.path()).is_empty(), "something was written");
+        fs::write(whole.path().join(name), &good[name]).expect("writable");
+    };
+    let rows = text(&good["convergence.csv"]);
+    let lines: Vec<&str> = rows.lines().collect();
+    let cut = |n: usize| lines[..n].join("\n") + "\n";
+    refused("convergence.csv", b"<!doctype html>\n<title>404</title>\n", "convergence.csv:2");
+    refused("convergence.csv", b"", "convergence.csv:1: 0 rows where manifest.json counts");
+    refused("convergence.csv", cut(1).as_bytes(), "convergence.csv:1: 0 rows where manifest.json counts");
+    refused("convergence.csv", cut(9).as_bytes(), "convergence.csv:9: 8 rows where manifest.json counts");
+    let header = |row: &str| row.split(',').filter(|name| *name != "theory_constant").collect::<Vec<_>>().join(",");
+    let column = lines[0].split(',').position(|name| name == "theory_constant").expect("a column");
+    let less = |row: &&str| {
+        row.split(',').enumerate().filter(|(i, _)| *i != column).map(|(_, x)| x).collect::<Vec<_>>().join(",")
+    };
+    let missing = [vec![header(lines[0])], lines[1..].iter().map(less).collect()].concat().join("\n");
+    refused("convergence.csv", missing.as_bytes(), "convergence.csv:1: the columns are not those of schema 1");
+    let scene = rows.replacen("\nconstant-force,", "\nconstant-farce,", 1);
+    refused("convergence.csv", scene.as_bytes(), "convergence.csv:2: scene 'constant-farce' is unknown");
+    let method = rows.replacen(",rk4,", ",rk5,", 1);
+    refused("convergence.csv", method.as_bytes(), "convergence.csv:2: method 'rk5' is unknown");
+    let steps = rows.replacen(",4,0.375,", ",0,0.375,", 1);
+    refused("convergence.csv", steps.as_bytes(), "convergence.csv:2: no run has 0 steps");
+    let edited = rows.replacen(",finished,", ",diverged,", 1);
+    refused("convergence.csv", edited.as_bytes(), "convergence.csv:1: not the file that manifest.json describes");
+    // Another run's manifest beside these rows, and these rows' manifest with another plan.
+    refused("manifest.json", &files(other.path())["manifest.json"], "not the file that manifest.json describes");
+    let plan = text(&good["manifest.json"]).replace("\"rk4\"", "\"velocity-verlet\"");
+    refused("manifest.json", plan.as_bytes(), "manifest.json:8: not the plan that the rows were measured by");
+    let schema = text(&good["manifest.json"]).replace("\"schema\": 1", "\"schema\": 2");
+    refused(
+        "manifest.json",
+        schema.as_bytes(),
+        "manifest.json:2: rows of schema 2, and this program reads schema 1; run again",
+    );
+    let (_, output) = report(&["--from", path(whole.path())]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
 // Fails if: a broken claim is left out of the comment, or the provenance.
 #[test]
 fn markdown_has_the_verdicts_and_every_broken_claim() {
@@ -227,7 +288,9 @@ fn markdown_has_the_verdicts_and_every_broken_claim() {
     for row in all.iter_mut().filter(|row| row.steps.ilog2() % 2 == 0) {
         row.error_end = row.error_end.map(|error| 10.0 * error);
     }
-    fs::write(&rows, reports::write_csv(&all).expect("flat rows")).expect("writable");
+    let spoilt = reports::write_csv(&all).expect("flat rows");
+    fs::write(&rows, &spoilt).expect("writable");
+    sealed(whole.path(), "convergence.csv", spoilt.as_bytes());
     let (out, bad, code) = markdown(whole.path());
     let broken: Vec<Claim> =
         written_claims(out.path()).into_iter().filter(|claim| claim.verdict == Verdict::Broken).collect();

@@ -36,6 +36,10 @@ fn nice_step(span: f64, most: usize) -> (f64, i32) {
 
 /// Evenly spaced ticks from `low` to `high`; the labels name the values times 10^shift.
 fn linear(low: f64, high: f64, most: usize, shift: i32) -> Vec<Tick> {
+    // Between two numbers that differ by nothing, or by more than there is, no step is nice.
+    if !(high - low > 0.0 && (high - low).is_finite()) {
+        return Vec::new();
+    }
     let (digit, exponent) = nice_step(high - low, most);
     let step = digit * power_of_ten(exponent);
     let (unit, largest) = (exponent + shift, low.abs().max(high.abs()).log10().floor() as i32 + shift);
@@ -123,6 +127,19 @@ mod tests {
 
     fn labels(ticks: &[Tick]) -> Vec<&str> {
         ticks.iter().map(|tick| tick.label.as_str()).collect()
+    }
+
+    // Fails if: an axis about the least or the greatest of all numbers asks for digits without end.
+    #[test]
+    fn an_axis_at_the_ends_of_the_numbers_has_ticks_or_none() {
+        for at in [5e-324_f64, 1e-320, f64::MIN_POSITIVE, 1e308, f64::MAX] {
+            for width in [0.0, 1e-12, 0.1, 0.5, 3.0] {
+                let at = at.log10();
+                let (major, minor) = log(at - width, at + width, 8);
+                assert!(major.iter().map(|tick| tick.at).chain(minor).all(f64::is_finite), "{at} {width}");
+            }
+            assert!(linear(-at, at, 8).len() + linear(at, at, 8).len() < 1001);
+        }
     }
 
     #[test]

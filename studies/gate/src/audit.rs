@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use reports::Table;
 
 use super::check::{Judged, judge};
+use super::mutants::Mutant;
 use super::row::{Kind, Row, Subject};
 use super::{Bounds, propose};
 use measure::error::Error;
@@ -15,6 +16,15 @@ use scenes::run::Precision;
 pub const VACUOUS: f64 = 3.0;
 /// Half the width that an interval of an exponent may have.
 const WIDE_EXPONENT: f64 = 0.5;
+/// The largest factor of a number that is truncation or a count, and of one that is rounding.
+const FACTOR: f64 = 1.1;
+const ROUNDING_FACTOR: f64 = 3.0;
+/// A number of f64 that is rounding differs from that of double-double by this part of it at least.
+const IS_ROUNDING: f64 = 1.0 / 64.0;
+/// By which part a number may have moved since it was written down, where it is not rounding; of an exponent by how much.
+const STALE: f64 = 0.05;
+/// One row in so many may name no mutant.
+const WITHOUT_MUTANT: usize = 100;
 /// Theory alone may say that there is no error but rounding, from 0 to this many roundings: what is measured in there is luck.
 const ROUNDINGS: f64 = 16.0;
 
@@ -31,6 +41,10 @@ pub struct Finding {
     pub vacuous: bool,
     /// A bound is nearer than the rounding noise.
     pub tight: bool,
+    /// The factor, or a bound from 0, is more than the number needs: only rounding needs more than 1.1.
+    pub loose: bool,
+    /// The number is not the one written down beside the bound.
+    pub stale: bool,
 }
 
 /// All that was found.
@@ -41,6 +55,8 @@ pub struct Audit {
     pub missing: Vec<Row>,
     /// Scene and quantity, and the methods that no row covers in it: nothing is proposed for them.
     pub uncovered: Vec<(String, String, Vec<String>)>,
+    /// Mutants that no row names.
+    pub unnamed: Vec<Mutant>,
 }
 
 /// Measures every row, and those of errors in f64 in double-double too.
@@ -69,14 +85,29 @@ pub fn audit(bounds: &Bounds, progress: &Progress) -> Result<Audit, Error> {
         })
         .collect();
     let missing = propose::missing(&bounds.known, &bounds.rows, progress);
-    Ok(Audit { findings, missing, uncovered: uncovered(bounds) })
+    let unnamed = unnamed(&bounds.rows);
+    Ok(Audit { findings, missing, uncovered: uncovered(bounds), unnamed })
+}
+
+/// The mutants that no row names.
+pub fn unnamed(rows: &[Row]) -> Vec<Mutant> {
+    let is_named = |mutant: &Mutant| rows.iter().any(|row| row.mutant == mutant.id());
+    Mutant::ALL.iter().copied().filter(|mutant| !is_named(mutant)).collect()
 }
 
 /// One row's margin, given its number in double-double, and what one rounding of it is.
 pub fn finding(judged: Judged, exact: Option<f64>, rounding: f64) -> Finding {
     let row = &judged.row;
     let Some(x) = judged.measured.value() else {
-        return Finding { judged, margin: f64::NAN, noise: None, vacuous: false, tight: false };
+        return Finding {
+            judged,
+            margin: f64::NAN,
+            noise: None,
+            vacuous: false,
+            tight: false,
+            loose: false,
+            stale: false,
+        };
     };
     let margin = margin(row, x);
     let most = if row.kind.is_exponent() { WIDE_EXPONENT } else { VACUOUS };
@@ -86,7 +117,24 @@ pub fn finding(judged: Judged, exact: Option<f64>, rounding: f64) -> Finding {
     let noise = exact.map(|exact| (x - exact).abs());
     let above_low = if row.low == 0.0 { f64::INFINITY } else { x - row.low };
     let tight = noise.is_some_and(|noise| noise > 0.0 && above_low.min(row.high - x) < noise);
-    Finding { margin, noise, vacuous, tight, judged }
+    let (loose, stale) = (is_loose(row, x, noise), !is_rounding && is_stale(row, x));
+    Finding { margin, noise, vacuous, tight, loose, stale, judged }
+}
+
+/// Whether the reason allows more than its number needs.
+fn is_loose(row: &Row, x: f64, noise: Option<f64>) -> bool {
+    let Some(factor) = row.factor() else { return false };
+    let from_zero = row.reason.split(':').next().is_some_and(|how| how.ends_with(", from 0"));
+    let says_rounding = row.reason.contains("rounding");
+    let is_rounding = says_rounding && noise.is_none_or(|noise| noise >= IS_ROUNDING * x.abs());
+    if is_rounding { factor > ROUNDING_FACTOR } else { from_zero || factor > FACTOR }
+}
+
+/// Whether the number written down is another one. The bounds of a factor or a width are held to it by the file's reader, theory's
+/// are not.
+fn is_stale(row: &Row, x: f64) -> bool {
+    let off = (x - row.measured).abs();
+    row.is_theory() && !(off <= if row.kind.is_exponent() { STALE } else { STALE * row.measured.abs() })
 }
 
 /// By how much a row's number may change before it breaks: the greater of high / x and x / low, for a bound from 0 high / x.
@@ -120,7 +168,7 @@ fn uncovered(bounds: &Bounds) -> Vec<(String, String, Vec<String>)> {
 impl Finding {
     /// Whether the row should be mended.
     pub fn is_flagged(&self) -> bool {
-        self.judged.is_broken() || self.vacuous || self.tight
+        self.judged.is_broken() || self.vacuous || self.tight || self.loose || self.stale
     }
 
     fn what(&self) -> String {
@@ -129,6 +177,10 @@ impl Finding {
             return format!("broken: {}: {}: {}\n", row.name(), self.judged.measured.text(), self.judged.excess());
         } else if self.tight {
             "too tight, a bound is within the rounding noise"
+        } else if self.stale {
+            "stale, the number is not the one written down"
+        } else if self.loose {
+            "loose, only rounding needs this factor or a bound from 0"
         } else {
             "vacuous"
         };
@@ -142,9 +194,11 @@ impl Audit {
         self.findings.iter().filter(|found| found.is_flagged()).collect()
     }
 
-    /// Whether no row is flagged and none is missing.
+    /// Whether no row is flagged and none is missing, every mutant is named, and nearly every row names one.
     pub fn is_good(&self) -> bool {
-        self.missing.is_empty() && self.flagged().is_empty()
+        let without = self.findings.iter().filter(|found| found.judged.row.mutant.is_empty()).count();
+        let named = self.unnamed.is_empty() && without * WITHOUT_MUTANT <= self.findings.len();
+        named && self.missing.is_empty() && self.flagged().is_empty()
     }
 
     /// For a reader: what is flagged, what is missing, every row's margin, then what is not covered.
@@ -153,6 +207,9 @@ impl Audit {
         self.flagged().iter().for_each(|found| text += &found.what());
         for row in &self.missing {
             text += &format!("missing: {}; --update adds it\n", row.name());
+        }
+        for mutant in &self.unnamed {
+            text += &format!("no row names the mutant {}; write it beside a row that it breaks\n", mutant.id());
         }
         if !text.is_empty() {
             text.push('\n');
@@ -187,7 +244,7 @@ impl Audit {
         margins.sort_by(f64::total_cmp);
         let open: usize = self.uncovered.iter().map(|(_, _, methods)| methods.len()).sum();
         format!(
-            "\n{} rows: {} of theory, {} broken, {} missing, {} vacuous, {} too tight, {} without a mutant; median margin {:.4}; \
+            "\n{} rows: {} of theory, {} broken, {} missing, {} vacuous, {} too tight, {} loose, {} stale, {} without a mutant; median margin {:.4}; \
              {open} combinations of scene, method and quantity without a row\n",
             self.findings.len(),
             count(&|found| found.judged.row.is_theory()),
@@ -195,6 +252,8 @@ impl Audit {
             self.missing.len(),
             count(&|found| found.vacuous),
             count(&|found| found.tight),
+            count(&|found| found.loose),
+            count(&|found| found.stale),
             count(&|found| found.judged.row.mutant.is_empty()),
             margins.get(margins.len() / 2).copied().unwrap_or(1.0),
         )

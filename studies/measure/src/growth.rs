@@ -102,7 +102,7 @@ pub fn classify(envelope: &[Envelope], noise_floor: f64) -> Growth {
     if envelope.len() < FEWEST || start.t_s * 10.0 > end.t_s * (1.0 + 4.0 * f64::EPSILON) {
         return Growth::blank(Law::Unclassified, "a law needs eight samples over a decade of time".to_owned());
     }
-    let largest = envelope.iter().map(|s| s.error).fold(0.0, f64::max);
+    let largest = envelope.iter().map(|s| s.error).fold(start.error, f64::max);
     if largest <= ABOVE_FLOOR * noise_floor {
         let evidence = format!("largest error {largest:.3e} within {ABOVE_FLOOR} times the floor {noise_floor:.3e}");
         return Growth::blank(Law::AtTheFloor, evidence);

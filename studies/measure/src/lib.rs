@@ -4,6 +4,7 @@
 //! the same rows, measured times excepted; a failed run never scores. This crate knows no page and no flag.
 
 pub mod adequacy;
+pub mod claim;
 pub mod convergence;
 pub mod drift;
 pub mod ensemble;

@@ -62,6 +62,31 @@ pub trait Study {
 
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
+
+    /// Whether a run could have written this row.
+    ///
+    /// # Errors
+    /// What could not: an unknown scene or method, no steps.
+    fn check(row: &Self::Row) -> Result<(), String> {
+        let _ = row;
+        Ok(())
+    }
+}
+
+/// Refuses a scene that is not in the catalogue.
+pub(crate) fn check_scene(id: &str) -> Result<(), String> {
+    if scenes::IDS.contains(&id) { Ok(()) } else { Err(format!("scene '{id}' is unknown")) }
+}
+
+/// Refuses a method of which this is not known to be the name.
+pub(crate) fn check_method(id: &str, is_known: bool) -> Result<(), String> {
+    if is_known { Ok(()) } else { Err(format!("method '{id}' is unknown")) }
+}
+
+/// Refuses steps that no run takes: there is at least one, and it lasts.
+pub(crate) fn check_steps(steps: u64, h_s: f64) -> Result<(), String> {
+    let lasts = h_s > 0.0 && h_s.is_finite();
+    if steps > 0 && lasts { Ok(()) } else { Err(format!("no run has {steps} steps of {h_s} s")) }
 }
 
 /// A table that follows from the rows of a study.

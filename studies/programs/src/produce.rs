@@ -39,6 +39,20 @@ pub struct Judged {
     pub claims: Vec<Claim>,
     /// Where the rows come from.
     pub manifest: Manifest,
+    /// Whether this is all that a study or the report has to say: a run of the default plan.
+    pub is_full: bool,
+}
+
+impl Judged {
+    fn of(claims: Vec<Claim>, manifest: Manifest) -> Self {
+        let is_full = manifest.plan == Plan::default();
+        Judged { claims, manifest, is_full }
+    }
+
+    /// The exit code: 1 if a claim is broken, or if one of a full run was not tested.
+    pub fn code(&self) -> u8 {
+        reports::exit_code(&self.claims, self.is_full)
+    }
 }
 
 /// Where rows come from, and in which form charts are wanted.
@@ -77,10 +91,7 @@ impl Source {
                 selection.progress.name(S::ID);
                 Ok(S::measure(selection))
             }
-            Rows::Files(directory) => {
-                let path = directory.join(format!("{}.csv", S::ID));
-                Ok(reports::read_csv(&provenance::read(&path)?, &path.display().to_string())?)
-            }
+            Rows::Files(directory) => self.manifest.rows_of::<S>(directory),
         }
     }
 
@@ -192,8 +203,9 @@ pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, .. } = source.product::<S>()?;
-    write(&out, S::ID, common, files, &source.manifest)?;
-    Ok(Judged { claims, manifest: source.manifest })
+    let manifest = source.manifest.sealed(&files)?;
+    write(&out, S::ID, common, files, &manifest)?;
+    Ok(Judged::of(claims, manifest))
 }
 
 /// Writes the files with plan and manifest in place of those that this program wrote there before, or of the files the charts
@@ -235,6 +247,7 @@ pub fn report(common: &Common) -> Result<Judged, Error> {
     let scenes = plan.selection()?.scenes;
     let html = page::html(sections, &scenes, about)?;
     files.push(("index.html".to_owned(), html.into_bytes()));
-    write(&out, REPORT, common, files, &source.manifest)?;
-    Ok(Judged { claims, manifest: source.manifest })
+    let manifest = source.manifest.sealed(&files)?;
+    write(&out, REPORT, common, files, &manifest)?;
+    Ok(Judged::of(claims, manifest))
 }

@@ -1,15 +1,20 @@
 //! Where a report comes from. It is kept apart from the tables and charts, which are the same bytes for the same plan, but for times.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use crate::plan::Plan;
 use measure::error::Error;
+use measure::study::Study;
 
 /// What measured the rows of a report, and by which plan. A page needs nothing but this and the rows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
+    /// Version of the columns of all rows: another one has other columns, or the same with another meaning.
+    pub schema: u32,
     /// Version of the workspace.
     pub version: String,
     /// Commit it was built from.
@@ -22,6 +27,39 @@ pub struct Manifest {
     pub processor: String,
     /// What was run.
     pub plan: Plan,
+    /// SHA-256 of the plan as TOML, in hexadecimal digits.
+    #[serde(default)]
+    pub plan_sha256: String,
+    /// The files of rows, by name.
+    #[serde(default)]
+    pub rows: BTreeMap<String, Seal>,
+}
+
+/// What a file of rows is known by.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Seal {
+    /// Number of its rows.
+    pub rows: usize,
+    /// SHA-256 of its bytes, in hexadecimal digits.
+    pub sha256: String,
+}
+
+/// The version of the columns that this program writes, and the only one that it reads.
+pub const SCHEMA: u32 = 1;
+
+/// The files of rows, one a study.
+const STUDIES: [&str; 7] = ["convergence", "drift", "rotation", "adequacy", "stability", "tradeoff", "ensemble"];
+
+const REMEDY: &str = "put the file back as a run wrote it, or run again";
+
+fn sha256(bytes: &[u8]) -> String {
+    format!("{:x}", Sha256::digest(bytes))
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
+    version: String,
 }
 
 /// The file among a report's that holds it.
@@ -33,13 +71,65 @@ impl Manifest {
     /// Of rows that this program measures.
     pub fn of(plan: &Plan) -> Self {
         Manifest {
+            schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: env!("STUDIES_COMMIT").to_owned(),
             compiler: env!("STUDIES_COMPILER").to_owned(),
             target: env!("STUDIES_TARGET").to_owned(),
             processor: processor(),
             plan: plan.clone(),
+            plan_sha256: String::new(),
+            rows: BTreeMap::new(),
         }
+    }
+
+    /// The same with the seals of the plan and of the rows among these files.
+    ///
+    /// # Errors
+    /// As [`Plan::to_toml`].
+    pub fn sealed(self, files: &[(String, Vec<u8>)]) -> Result<Self, Error> {
+        let is_rows = |name: &str| name.strip_suffix(".csv").is_some_and(|study| STUDIES.contains(&study));
+        let seal = |(name, bytes): &(String, Vec<u8>)| {
+            let rows = bytes.iter().filter(|byte| **byte == b'\n').count().saturating_sub(1);
+            (name.clone(), Seal { rows, sha256: sha256(bytes) })
+        };
+        let rows = files.iter().filter(|(name, _)| is_rows(name)).map(seal).collect();
+        Ok(Manifest { plan_sha256: sha256(self.plan.to_toml()?.as_bytes()), rows, ..self })
+    }
+
+    /// The rows of one study in a directory, if they are those that this manifest was written with.
+    ///
+    /// # Errors
+    /// Rows that cannot be read, that no run writes, or that are not those of the manifest: with file and line.
+    pub fn rows_of<S: Study>(&self, directory: &Path) -> Result<Vec<S::Row>, Error> {
+        let name = format!("{}.csv", S::ID);
+        let path = directory.join(&name);
+        let place = path.display().to_string();
+        let at = |line: usize, message: String| Error::plan(format!("{place}:{line}"), format!("{message}; {REMEDY}"));
+        let text = read(&path)?;
+        let rows: Vec<S::Row> = reports::read_csv(&text, &place)?;
+        let header = reports::write_csv(&rows[..rows.len().min(1)])?;
+        let header = header.lines().next().unwrap_or_default();
+        if !rows.is_empty() && text.lines().next() != Some(header) {
+            return Err(at(1, format!("the columns are not those of schema {SCHEMA}, {header}")));
+        }
+        for (line, row) in (2..).zip(&rows) {
+            S::check(row).map_err(|message| at(line, message))?;
+        }
+        let Some(seal) = self.rows.get(&name) else {
+            let manifest = directory.join(MANIFEST).display().to_string();
+            return Err(Error::plan(manifest, format!("rows: {name} is not among them; {REMEDY}")));
+        };
+        if seal.rows != rows.len() {
+            let message = format!("{} rows where {MANIFEST} counts {}", rows.len(), seal.rows);
+            return Err(at(text.lines().count().max(1), message));
+        }
+        let found = sha256(text.as_bytes());
+        if found != seal.sha256 {
+            let message = format!("not the file that {MANIFEST} describes: SHA-256 {found}, not {}", seal.sha256);
+            return Err(at(1, message));
+        }
+        Ok(rows)
     }
 
     /// Of rows that lie in a directory.
@@ -49,12 +139,28 @@ impl Manifest {
     pub fn read(directory: &Path) -> Result<Self, Error> {
         let path = directory.join(MANIFEST);
         let text = read(&path)?;
-        serde_json::from_str(&text).map_err(|error| {
+        let wrong = |error: serde_json::Error| {
             let place = format!("{}:{}:{}", path.display(), error.line(), error.column());
             let said = error.to_string();
             let said = said.split(" at line ").next().unwrap_or_default().to_owned();
-            Error::plan(place, format!("{said}; put the file back as a run wrote it, or run again"))
-        })
+            Error::plan(place, format!("{said}; {REMEDY}"))
+        };
+        // Another schema may have other keys, too: it is looked at first.
+        let line = |key: &str| 1 + text.lines().take_while(|line| !line.contains(key)).count();
+        if let Ok(Version { schema, version }) = serde_json::from_str(&text)
+            && schema != SCHEMA
+        {
+            let place = format!("{}:{}", path.display(), line("\"schema\""));
+            let message = format!("rows of schema {schema}, and this program reads schema {SCHEMA}");
+            let remedy = format!("run again, or read them with the version that wrote them, {version}");
+            return Err(Error::plan(place, format!("{message}; {remedy}")));
+        }
+        let manifest: Manifest = serde_json::from_str(&text).map_err(wrong)?;
+        if manifest.plan_sha256 != sha256(manifest.plan.to_toml()?.as_bytes()) {
+            let place = format!("{}:{}", path.display(), line("\"plan\""));
+            return Err(Error::plan(place, format!("not the plan that the rows were measured by; {REMEDY}")));
+        }
+        Ok(manifest)
     }
 
     /// As JSON.

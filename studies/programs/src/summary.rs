@@ -1,7 +1,7 @@
 //! Claims in short: for a terminal, for a pull request's comment, for a machine.
 
 use reports::claim::{Counts, counts};
-use reports::{Claim, Table, Verdict, exit_code};
+use reports::{Claim, Table, Verdict};
 use serde::Serialize;
 
 use crate::produce::Judged;
@@ -15,7 +15,14 @@ pub fn summary(claims: &[Claim]) -> String {
     }
     let broken = broken(claims);
     let table = counted(claims).to_text();
-    if broken.rows.is_empty() { table } else { format!("{}\n{table}", broken.to_text()) }
+    let broken = if broken.rows.is_empty() { String::new() } else { format!("{}\n", broken.to_text()) };
+    format!("{}\n{broken}{table}", headline(claims))
+}
+
+/// How many claims hold, are broken and were not tested, in a line.
+fn headline(claims: &[Claim]) -> String {
+    let Counts { holds, broken, not_tested } = counts(claims);
+    format!("{holds} claims hold, {broken} broken, {not_tested} not tested\n")
 }
 
 /// Every claim with its verdict.
@@ -28,14 +35,18 @@ pub fn verdicts(claims: &[Claim]) -> String {
         let verdict = format!("{} {}", claim.verdict.sign(), claim.verdict);
         table.push([&claim.id, &claim.theory, &claim.measured, &verdict].map(String::clone));
     }
-    table.to_text()
+    format!("{}\n{}", headline(claims), table.to_text())
 }
 
 /// A heading with the verdict, the counts of each study, the broken claims and where the numbers come from.
 pub fn markdown(judged: &Judged) -> String {
-    let Judged { claims, manifest } = judged;
+    let Judged { claims, manifest, .. } = judged;
     let Counts { holds, broken: against, not_tested } = counts(claims);
-    let head = if against > 0 { Verdict::Broken } else { Verdict::Holds };
+    let head = match judged.code() {
+        0 => Verdict::Holds,
+        _ if against > 0 => Verdict::Broken,
+        _ => Verdict::NotTested,
+    };
     let title =
         format!("### {} Accuracy: {holds} claims hold, {against} broken, {not_tested} not tested\n", head.sign());
     let broken = broken(claims);
@@ -69,9 +80,9 @@ struct Study<'a> {
 /// # Errors
 /// None that is known: claims have a form in JSON.
 pub fn json(judged: &Judged) -> Result<String, Error> {
-    let Judged { claims, manifest } = judged;
+    let Judged { claims, manifest, .. } = judged;
     let studies = by_study(claims);
-    let all = ForMachines { format: 1, manifest, holds: exit_code(claims) == 0, studies, claims };
+    let all = ForMachines { format: 1, manifest, holds: judged.code() == 0, studies, claims };
     let text = serde_json::to_string_pretty(&all).map_err(|error| Error::plan("JSON", error.to_string()))?;
     Ok(text + "\n")
 }

@@ -157,10 +157,19 @@ pub fn widen<T: Single>(q: Rotation<T>) -> Rotation<fx128> {
     Rotation { w: q.w.widen(), v: q.v.map(Single::widen) }
 }
 
-/// sqrt(sum x^2), scaled so that neither 1e200 overflows nor 1e-200 vanishes; NaN where a component is.
+/// The largest of some sizes: NaN if any of them is, `None` if there is none.
+pub fn largest(sizes: impl IntoIterator<Item = f64>) -> Option<f64> {
+    sizes.into_iter().reduce(worse)
+}
+
+/// The larger number; NaN if either is.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+/// sqrt(sum x^2), scaled so that neither 1e200 overflows nor 1e-200 vanishes; NaN if any component is.
 pub fn norm(components: impl Iterator<Item = fx128> + Clone) -> fx128 {
-    let larger = |most: f64, x: f64| if x > most || x.is_nan() { x } else { most };
-    let largest = components.clone().map(|x| x.0.abs()).fold(0.0, larger);
+    let largest = largest(components.clone().map(|x| x.0.abs())).unwrap_or(0.0);
     if largest == 0.0 || !largest.is_finite() {
         return fx128::from_f64(largest);
     }

@@ -4,7 +4,7 @@ use faer::fx128;
 use integrator::{Real, Rotation, Single, Vector};
 
 use crate::motion::Motion;
-use crate::observation::{Observation, Quantity, Value, norm};
+use crate::observation::{Observation, Quantity, Value, norm, worse};
 
 /// What an exact motion lacks of solving its equation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub fn residual<M: Motion<fx128>>(model: &M, t: fx128, h_s: f64) -> Residual {
             .into_iter()
             .fold(0.0, worse),
         rate: norm(of_rate.collect::<Vec<_>>().into_iter()).to_f64(),
-        size: [positions.fold(0.0, f64::max), norm(components(&here.v)).to_f64(), norm(components(&rate)).to_f64()],
+        size: [positions.fold(0.0, worse), norm(components(&here.v)).to_f64(), norm(components(&rate)).to_f64()],
     }
 }
 
@@ -72,9 +72,4 @@ fn of_velocity(quantity: Quantity, seen: &[Observation], h: fx128) -> f64 {
         }
     };
     norm(errors.into_iter()).to_f64()
-}
-
-/// The larger number; NaN if either is.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

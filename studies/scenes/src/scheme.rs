@@ -84,6 +84,12 @@ impl Scheme {
         Self::all().into_iter().find(|scheme| scheme.id() == id)
     }
 
+    /// Whether this is the name of a scheme, compared or not.
+    pub fn is_known(id: &str) -> bool {
+        let rule = id.strip_suffix("/linear").unwrap_or(id);
+        Self::all().into_iter().any(|scheme| scheme.id() == rule)
+    }
+
     /// The name in a chart.
     pub fn label(self) -> String {
         let stored = match self.storage {

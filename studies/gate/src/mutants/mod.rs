@@ -64,6 +64,7 @@ mutants! {
     StaleForce, "stale-force", "velocity Verlet kicks twice with the first force";
     StageTime, "rk4-stage-time", "every stage of RK4 is evaluated at the time of the first";
     Curvature, "rk4-without-curvature", "RK4 on a rotation without the brackets of Munthe-Kaas";
+    SingleParameters, "f32-parameters", "the parameters are rounded to f32";
     SingleAccumulation, "f32-accumulation", "the state is stored in f32 between the steps";
     GyroscopicMissing, "gyroscopic-term-missing", "the gyroscopic term omega x I omega is left out";
     GyroscopicSign, "gyroscopic-term-sign", "the gyroscopic term has the wrong sign";
@@ -96,7 +97,7 @@ impl Mutant {
             Mutant::AccumulatedTime => &["t = i h"],
             Mutant::StageTime => &["order 4"],
             Mutant::Curvature => &["brackets of SO(3)"],
-            Mutant::SingleAccumulation => &["rounding"],
+            Mutant::SingleAccumulation | Mutant::SingleParameters => &["rounding"],
             Mutant::GyroscopicMissing | Mutant::GyroscopicSign => &["tau - omega x I"],
             Mutant::GyroscopicAdded => &["without omega x I omega"],
             Mutant::WrongFrame => &["= tau"],
@@ -124,6 +125,7 @@ impl Mutant {
             Mutant::MomentumRescaled => {
                 is(MethodId::SemiImplicitEuler) && storage.is_some_and(|(stored, _)| stored == body)
             }
+            Mutant::SingleParameters => precision != Precision::F32 && in_single(scene).is_some(),
             Mutant::MassIgnored => mass_of(scene).is_some_and(|mass| mass != "1"),
             Mutant::ForceSign => in_double,
             Mutant::GyroscopicMissing | Mutant::GyroscopicSign => {
@@ -186,6 +188,7 @@ impl Candidate for Wrong {
         }
         match self.mutant {
             Mutant::OneStepShort => one_step_short(self.stepper, ask),
+            Mutant::SingleParameters => self.stepper.run(&Ask { scene: in_single(ask.scene)?.as_ref(), ..*ask }),
             Mutant::MassIgnored => self.stepper.run(&Ask { scene: without_mass(ask.scene)?.as_ref(), ..*ask }),
             _ => match ask.scene.any_motion() {
                 AnyMotion::One(motion) => self.on_flat(motion, clock(ask)?),
@@ -203,6 +206,7 @@ impl Candidate for Wrong {
 
     fn limit(&self, scene: &dyn AnyScene, precision: Precision) -> Option<Found> {
         match self.mutant {
+            Mutant::SingleParameters => self.stepper.limit(in_single(scene)?.as_ref(), precision),
             Mutant::MassIgnored => self.stepper.limit(without_mass(scene)?.as_ref(), precision),
             _ => self.other()?.limit(scene, precision),
         }
@@ -310,6 +314,24 @@ fn one_step_short(stepper: Stepper, ask: &Ask<'_>) -> Option<Trajectory> {
         *step = ask.steps;
     }
     Some(trajectory)
+}
+
+/// The scene with its parameters rounded to f32; `None` where that changes none of them.
+fn in_single(scene: &dyn AnyScene) -> Option<Box<dyn AnyScene>> {
+    let mut other = scenes::by_id(scene.id()).ok()?;
+    let id = other.id();
+    let mut changed = false;
+    for parameter in other.scene().parameters() {
+        let numbers = parameter.value.split(',').map(|text| text.trim().parse().ok());
+        let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+        let rounded: Vec<f64> = numbers.iter().map(|&x| f64::from(x as f32)).collect();
+        if rounded != numbers {
+            changed = true;
+            let text: Vec<String> = rounded.iter().map(f64::to_string).collect();
+            other.scene_mut().set(id, parameter.name, &text.join(",")).ok()?;
+        }
+    }
+    changed.then_some(other)
 }
 
 fn without_mass(scene: &dyn AnyScene) -> Option<Box<dyn AnyScene>> {

@@ -6,11 +6,13 @@ mod show;
 use faer::fx128;
 use integrator::Real;
 use integrator::methods::MethodId;
-use reports::{Claim, Figure, Verdict};
+use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
+use crate::claim;
+use crate::claim::Evidence;
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study, distinct, short};
+use crate::study::{Derived, Selection, Study, check_method, check_steps, distinct, short};
 use crate::sweep::in_parallel;
 use ladders::{Ladder, METHODS, Rung};
 use scenes::run::Outcome;
@@ -78,6 +80,13 @@ impl Study for Adequacy {
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         rungs(rows).iter().filter_map(claim).collect()
+    }
+    fn check(row: &Row) -> Result<(), String> {
+        if !scenes::IDS.iter().any(|id| without_preset(id) == base(&row.scene)) {
+            return Err(format!("scene '{}' is unknown", row.scene));
+        }
+        check_method(&row.method, METHODS.iter().any(|method| method.id() == row.method))?;
+        check_steps(row.steps, row.h_s)
     }
 }
 
@@ -152,6 +161,8 @@ pub struct Seen {
     pub operations_a_step: u64,
     /// Evaluations of the force law in one step.
     pub evaluations_a_step: f64,
+    /// Whether every run finished with an error.
+    pub finished: bool,
 }
 
 /// Errors below this are rounding: 2^13 steps of a few units in the last place of numbers of the order of 10.
@@ -185,43 +196,48 @@ fn seen(sweep: &[&Row]) -> Seen {
         finest,
         order,
         plateau_h_s: sweep.iter().rev().take_while(near).last().map(|row| row.h_s),
-        operations_a_step: first.operations / first.steps,
+        operations_a_step: first.operations.checked_div(first.steps).unwrap_or(0),
         evaluations_a_step: first.evaluations as f64 / first.steps as f64,
+        finished: sweep.iter().all(|row| row.outcome == Outcome::Finished && row.error.is_some_and(f64::is_finite)),
     }
 }
 
-/// A consistent model: its error falls, or is rounding. An inconsistent one: the last halving does not change the error. That is
-/// seen with RK4, whose own error is far below that of the model; where a model is nearly right, as a small angle is for a small
-/// swing, the error of a method of order 1 still covers it.
+/// A consistent model: its error falls with the order of the method, or is rounding. An inconsistent one: the last halving does
+/// not change the error. That is seen with RK4, whose own error is far below that of the model; where a model is nearly right, as
+/// a small angle is for a small swing, the error of a method of order 1 still covers it.
 fn claim(seen: &Seen) -> Option<Claim> {
     if !seen.consistent && seen.method != MethodId::Rk4.id() {
         return None;
     }
-    let id = format!("adequacy.{}.{}.{}", seen.scene, seen.model, seen.method).replace(' ', "-");
-    let (statement, theory, bound, holds) = if seen.consistent {
-        let holds = seen.finest.is_some_and(|e| e <= FLOOR) || seen.order.is_some_and(|p| p >= LEAST_ORDER);
-        ("converges to the full motion", "order 1 or more, or exact", format!("order at least {LEAST_ORDER}"), holds)
+    let id = format!("{}.{}.{}", seen.scene, seen.model, seen.method).replace(' ', "-");
+    let promised = METHODS.iter().find(|m| m.id() == seen.method).map(|m| f64::from(m.order()));
+    let rounding = seen.finest.is_some_and(|error| (0.0..=FLOOR).contains(&error));
+    let (statement, theory, bound, evidence) = if seen.consistent {
+        let order = match seen.order {
+            None => Evidence::is(rounding),
+            order => Evidence::near(order, promised, ORDER_TOLERANCE),
+        };
+        let theory = promised.map_or_else(|| "unknown".to_owned(), |p| format!("order {p}, or exact"));
+        ("converges to the full motion", theory, format!("order within {ORDER_TOLERANCE}"), order)
     } else {
-        let holds = seen.finest.is_some_and(|e| e > FLOOR) && seen.order.is_some_and(|p| p.abs() <= LARGEST_ORDER);
+        let order = if rounding { None } else { seen.order };
         (
             "is inconsistent: its error does not fall with the step",
-            "order 0",
+            "order 0".to_owned(),
             format!("|order| at most {LARGEST_ORDER}"),
-            holds,
+            Evidence::near(order, Some(0.0), LARGEST_ORDER),
         )
     };
-    Some(Claim {
-        id,
-        study: "adequacy".to_owned(),
-        statement: format!("'{}' with {} on {} {statement}", seen.model, seen.method, seen.scene),
-        theory: theory.to_owned(),
-        measured: format!("order {}, error {} {} at the finest step", short(seen.order), short(seen.finest), seen.unit),
+    let texts = [
+        format!("'{}' with {} on {} {statement}", seen.model, seen.method, seen.scene),
+        theory,
+        format!("order {}, error {} {} at the finest step", short(seen.order), short(seen.finest), seen.unit),
         bound,
-        verdict: Verdict::from_comparison(holds),
-    })
+    ];
+    Some(claim::claim("adequacy", &id, texts, [evidence, Evidence::is(seen.finished)]))
 }
 
-/// Order 1, less what the next term of the error takes at the finest step.
-const LEAST_ORDER: f64 = 0.95;
+/// What the next term of the error, and rounding near [`FLOOR`], take from an order or add to it at the finest steps.
+const ORDER_TOLERANCE: f64 = 0.1;
 /// Order 0, and what RK4's own error adds at the finest step: less than a thousandth of the model's.
 const LARGEST_ORDER: f64 = 0.001;

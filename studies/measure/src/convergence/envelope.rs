@@ -1,10 +1,11 @@
 //! Errors that theory only bounds: an event anywhere in a step makes error / h^p jump between bounds from step to step, so
 //! that no local order means anything. What can be tested is the envelope.
 
-use reports::{Claim, Verdict as Truth};
+use reports::Claim;
 
 use super::Row;
 use super::orders::{Measure, OrderRow};
+use crate::claim::{Evidence, claim, largest};
 use crate::order::{Sample, Verdict};
 
 /// The largest error / h^p of the coarser and of the finer half of a sweep may differ by the factor 8: over the half of
@@ -20,9 +21,8 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
     let p = first.theory_order.unwrap_or(0.0);
     let ratios: Vec<f64> = samples.iter().map(|s| s.error.map_or(f64::NAN, |e| e / s.h_s.powf(p))).collect();
     let (coarse, fine) = ratios.split_at(ratios.len() / 2);
-    let largest =
-        |part: &[f64]| part.iter().copied().fold(0.0, |a: f64, b| if b.is_nan() { f64::NAN } else { a.max(b) });
-    let (coarse_top, fine_top) = (largest(coarse), largest(fine));
+    let top = |part: &[f64]| largest(part.iter().copied().map(Some)).unwrap_or(f64::NAN);
+    let (coarse_top, fine_top) = (top(coarse), top(fine));
     let middle = samples.len() / 2;
     let span = samples.first().zip(samples.get(middle)).map_or(1.0, |(a, b)| (a.h_s / b.h_s).ln());
     // Rounding fills the fine end of a sweep in f32 and f64; the claims are made in double-double.
@@ -55,24 +55,19 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
 }
 
 /// The errors of the finer half stay below the bound of theory, and one of them comes near it.
-pub(super) fn claim(o: &OrderRow) -> Option<Claim> {
+pub(super) fn envelope_claim(o: &OrderRow) -> Option<Claim> {
     if !o.theory_is_envelope {
         return None;
     }
-    let (bound, largest) = (o.theory_constant?, o.constant?);
+    let bound = o.theory_constant?;
     let p = o.theory_order?;
-    Some(Claim {
-        id: format!("convergence.{}.{}.{}.envelope", o.scene, o.method, o.quantity.id()),
-        study: "convergence".to_owned(),
-        statement: format!(
-            "the {} error of {} on {} stays in the envelope of theory",
-            o.quantity.id(),
-            o.method,
-            o.scene
-        ),
-        theory: format!("error / h^{p} <= {bound:.6e} {}/s^{p}", o.unit),
-        measured: format!("largest of the finer half {largest:.6e}"),
-        bound: format!("between {REACHED} and 1 + {NEXT_TERMS} of it"),
-        verdict: Truth::from_comparison(largest <= bound * (1.0 + NEXT_TERMS) && largest >= bound * REACHED),
-    })
+    let texts = [
+        format!("the {} error of {} on {} stays in the envelope of theory", o.quantity.id(), o.method, o.scene),
+        format!("error / h^{p} <= {bound:.6e} {}/s^{p}", o.unit),
+        o.constant.map_or_else(|| "a run failed".to_owned(), |x| format!("largest of the finer half {x:.6e}")),
+        format!("between {REACHED} and 1 + {NEXT_TERMS} of it"),
+    ];
+    let evidence = Evidence::within(o.constant, [bound * REACHED, bound * (1.0 + NEXT_TERMS)]);
+    let id = format!("{}.{}.{}.envelope", o.scene, o.method, o.quantity.id());
+    Some(claim("convergence", &id, texts, [evidence]))
 }

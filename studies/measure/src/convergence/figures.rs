@@ -76,8 +76,8 @@ fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
         .unwrap_or(Precision::F64);
     let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.precision == precision).collect();
     let mut layers = Vec::new();
-    let rounding = rows.iter().filter_map(|row| row.rounding_end).fold(0.0, f64::max);
-    if rounding > 0.0 {
+    let rounding = rows.iter().filter_map(|row| row.rounding_end).reduce(f64::max);
+    if let Some(rounding) = rounding.filter(|y| *y > 0.0) {
         layers.push(Layer::Floor { y: rounding, label: format!("largest rounding error ({})", precision.id()) });
     }
     let mut exact = Vec::new();

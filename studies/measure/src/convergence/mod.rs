@@ -3,6 +3,7 @@
 mod envelope;
 mod figures;
 mod orders;
+mod rounding;
 
 pub use orders::{Measure, OrderRow, orders, tolerance};
 
@@ -11,13 +12,13 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{Derived, Selection, Study, check_method, check_scene, check_steps};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::errors;
 use scenes::errors::{Errors, Truth};
 use scenes::observation::Quantity;
-use scenes::run::{Outcome, Precision, Trajectory};
+use scenes::run::{Outcome, Precision, Trajectory, method_from_id};
 use scenes::theory::ExpectedOrder;
 
 /// Halvings of the step from the coarsest to the finest run.
@@ -95,7 +96,14 @@ impl Study for Convergence {
         figure.id.starts_with("convergence-") || figure.id == "precision-torque-free-spin-attitude"
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
-        orders::claims(rows)
+        let mut claims = orders::claims(rows);
+        claims.extend(rounding::claims(rows));
+        claims
+    }
+    fn check(row: &Row) -> Result<(), String> {
+        check_scene(&row.scene)?;
+        check_method(&row.method, method_from_id(&row.method).is_ok())?;
+        check_steps(row.steps, row.h_s)
     }
 }
 

@@ -1,15 +1,16 @@
 //! From rows to observed orders, and to claims about them.
 
-use reports::{Claim, Table, Verdict as Truth};
+use reports::{Claim, Table};
 use serde::{Deserialize, Serialize};
 
 use super::{HALVINGS, Row, envelope};
+use crate::claim::{Evidence, claim};
 use crate::error::Error;
 use crate::order;
 use crate::order::{Expected, Limits, Sample, Verdict};
 use crate::study::{Derived, short};
 use scenes::observation::Quantity;
-use scenes::run::Precision;
+use scenes::run::{Outcome, Precision};
 
 /// Where in a run an error is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -118,6 +119,7 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
                 Measure::End => (row.error_end, row.rounding_end),
                 Measure::Max => (row.error_max, row.rounding_max),
             };
+            let error = error.filter(|_| row.outcome == Outcome::Finished);
             let floor = if row.precision == Precision::DoubleDouble { 0.0 } else { rounding.unwrap_or(0.0) };
             Sample { h_s: row.h_s, error, floor }
         })
@@ -211,7 +213,7 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     for group in double.chunk_by(|a, b| a.scene == b.scene && a.method == b.method) {
         claims.push(order_claim(group));
         claims.extend(group.iter().filter_map(|o| constant_claim(o)));
-        claims.extend(group.iter().filter_map(|o| envelope::claim(o)));
+        claims.extend(group.iter().filter_map(|o| envelope::envelope_claim(o)));
     }
     claims
 }
@@ -225,20 +227,15 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
     let theory = |o: &&OrderRow| o.theory_order.map_or_else(|| "exact".to_owned(), |p| p.to_string());
     let mut promised: Vec<String> = group.iter().map(theory).collect();
     promised.dedup();
-    Claim {
-        id: format!("convergence.{}.{}.order", first.scene, first.method),
-        study: "convergence".to_owned(),
-        statement: format!("{} on {} converges with the order of theory", first.method, first.scene),
-        theory: promised.join(", "),
-        measured: measured.join("; "),
-        bound: format!("within {} of theory in double-double", first.tolerance),
-        // Two runs have a slope, and nothing that could contradict it.
-        verdict: if judged.iter().all(|o| o.runs < 3) {
-            Truth::NotTested
-        } else {
-            Truth::from_comparison(judged.iter().all(|o| o.verdict.passes()))
-        },
-    }
+    // Two runs have a slope, and nothing that could contradict it.
+    let decided = |o: &&OrderRow| if o.runs < 3 { Evidence::Undecided } else { Evidence::is(o.verdict.passes()) };
+    let texts = [
+        format!("{} on {} converges with the order of theory", first.method, first.scene),
+        promised.join(", "),
+        measured.join("; "),
+        format!("within {} of theory in double-double", first.tolerance),
+    ];
+    claim("convergence", &format!("{}.{}.order", first.scene, first.method), texts, judged.iter().map(decided))
 }
 
 /// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by
@@ -248,18 +245,23 @@ fn is_judged(o: &OrderRow) -> bool {
 }
 
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
-    let (theory, measured, change) = (o.theory_constant?, o.constant?, o.constant_change?);
+    // An envelope has a claim of its own.
+    let theory = o.theory_constant.filter(|_| !o.theory_is_envelope)?;
     // Where the next term is of second order, the extrapolation overshoots by two thirds of its change.
-    let bound = change + ROUNDING * theory;
-    Some(Claim {
-        id: format!("convergence.{}.{}.{}.constant", o.scene, o.method, o.quantity.id()),
-        study: "convergence".to_owned(),
-        statement: format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
-        theory: format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
-        measured: format!("{measured:.9e}"),
-        bound: format!("+- {bound:.1e}, the change of the last extrapolation"),
-        verdict: Truth::from_comparison((measured - theory).abs() <= bound),
-    })
+    let bound = o.constant_change.map_or(f64::NAN, |change| change + ROUNDING * theory);
+    let texts = [
+        format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
+        format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
+        o.constant.map_or_else(|| "none".to_owned(), |x| format!("{x:.9e}")),
+        format!("+- {bound:.1e}, the change of the last extrapolation"),
+    ];
+    // Too few runs, or too coarse ones, have no window to extrapolate from.
+    let evidence = match o.constant {
+        None if o.runs < 3 => Evidence::Undecided,
+        constant => Evidence::near(constant, Some(theory), bound),
+    };
+    let id = format!("{}.{}.{}.constant", o.scene, o.method, o.quantity.id());
+    Some(claim("convergence", &id, texts, [evidence]))
 }
 
 /// Rounding of a constant that is computed in f64 from theory.

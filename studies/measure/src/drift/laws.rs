@@ -1,13 +1,14 @@
 //! From the stretches of a run to the law of growth, and to claims about it.
 
-use reports::{Claim, Table, Verdict as Truth};
+use reports::{Claim, Table};
 use serde::{Deserialize, Serialize};
 
-use super::{Drift, Row};
+use super::{Drift, Row, STRETCHES};
+use crate::claim::{Evidence, claim};
 use crate::error::Error;
 use crate::growth;
 use crate::study::{Derived, short};
-use scenes::run::Precision;
+use scenes::run::{Outcome, Precision};
 use scenes::theory::Law;
 
 /// The law of growth of one balance in one run.
@@ -55,10 +56,18 @@ pub struct LawRow {
 
 /// The law of every balance of every run among the rows, in their order.
 pub fn laws(rows: &[Row]) -> Vec<LawRow> {
-    let same = |a: &Row, b: &Row| {
-        a.scene == b.scene && a.method == b.method && a.precision == b.precision && a.drift == b.drift
-    };
-    rows.chunk_by(same).map(law_of).collect()
+    runs(rows).map(law_of).collect()
+}
+
+fn runs(rows: &[Row]) -> impl Iterator<Item = &[Row]> {
+    rows.chunk_by(|a, b| a.scene == b.scene && a.method == b.method && a.precision == b.precision && a.drift == b.drift)
+}
+
+/// Whether a run finished and every stretch of it was measured.
+fn is_complete(run: &[Row]) -> bool {
+    let measured = |row: &Row| row.error_min.zip(row.error_max).is_some_and(|(low, high)| low <= high);
+    run.len() as u64 == STRETCHES
+        && run.iter().all(|row| row.outcome == Outcome::Finished && row.failed_at_s.is_none() && measured(row))
 }
 
 fn law_of(run: &[Row]) -> LawRow {
@@ -126,55 +135,55 @@ pub(super) fn table(rows: &[Row]) -> Result<Derived, Error> {
 
 /// One claim for each run and balance of which theory says something, in f64.
 pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
-    laws(rows).iter().filter(|law| law.precision == Precision::F64).filter_map(claim).collect()
+    runs(rows).filter(|run| run[0].precision == Precision::F64).filter_map(judged).collect()
 }
 
-fn claim(row: &LawRow) -> Option<Claim> {
+fn judged(run: &[Row]) -> Option<Claim> {
+    let row = &law_of(run);
     let theory = row.theory_law?;
     let band = row.theory_low.zip(row.theory_high);
     let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), |x| format!("{x:.9e}"));
-    let (statement, theory_text, measured, bound, holds) = match (theory, band) {
-        (Law::Exponential, Some((rate, _))) => (
+    let (statement, theory_text, measured, bound, evidence) = match (theory, band) {
+        (Law::Exponential, Some((rate, high))) => (
             "changes exponentially at the rate of theory",
             format!("rate {rate:.9e} 1/s"),
             format!("rate {} 1/s", number(row.rate_per_s)),
             // The rate is a mean over a run that ends within one stretch of its period.
             format!("relative difference at most {EXPONENTIAL_TOLERANCE:.0e}"),
-            row.rate_per_s.is_some_and(|r| (r / rate - 1.0).abs() <= EXPONENTIAL_TOLERANCE),
+            vec![Evidence::within(
+                row.rate_per_s,
+                [rate - EXPONENTIAL_TOLERANCE * rate.abs(), high + EXPONENTIAL_TOLERANCE * high.abs()],
+            )],
         ),
         (Law::Bounded, Some((low, high))) => (
             "stays inside its exact band",
             format!("value / start in [{low:.9}, {high:.9}]"),
             format!("in [{}, {}]", number(row.ratio_low), number(row.ratio_high)),
             format!("the band, and {ROUNDING_SLACK:.0e} for rounding"),
-            row.ratio_low.zip(row.ratio_high).is_some_and(|(a, b)| {
-                // Filled as well as kept: a band that nothing comes near to proves nothing.
-                let width = high - low;
-                a >= low - ROUNDING_SLACK && b <= high + ROUNDING_SLACK && b - a >= 0.5 * width
-            }),
+            {
+                let inside = [low - ROUNDING_SLACK, high + ROUNDING_SLACK];
+                let width = row.ratio_low.zip(row.ratio_high).map(|(a, b)| b - a);
+                vec![
+                    Evidence::within(row.ratio_low, inside),
+                    Evidence::within(row.ratio_high, inside),
+                    // Filled as well as kept: a band that nothing comes near to proves nothing.
+                    Evidence::within(width, [0.5 * (high - low), f64::INFINITY]),
+                ]
+            },
         ),
         _ => (
             "grows by the law of theory",
             theory.to_string(),
             format!("{} ({})", row.law, row.evidence),
             "the same law".to_owned(),
-            row.law == theory,
+            // Where two laws fit alike, nothing was measured that could tell which.
+            vec![if row.law == Law::Unclassified { Evidence::Undecided } else { Evidence::is(row.law == theory) }],
         ),
     };
-    Some(Claim {
-        id: format!("drift.{}.{}.{}", row.scene, row.method, row.drift.id()),
-        study: "drift".to_owned(),
-        statement: format!("{} of {} on {} {statement}", row.drift.id(), row.method, row.scene),
-        theory: theory_text,
-        measured,
-        bound,
-        // Where two laws fit alike, nothing was measured that could tell which.
-        verdict: if band.is_none() && row.law == Law::Unclassified {
-            Truth::NotTested
-        } else {
-            Truth::from_comparison(holds)
-        },
-    })
+    let statement = format!("{} of {} on {} {statement}", row.drift.id(), row.method, row.scene);
+    let id = format!("{}.{}.{}", row.scene, row.method, row.drift.id());
+    let evidence = evidence.into_iter().chain([Evidence::is(is_complete(run))]);
+    Some(claim("drift", &id, [statement, theory_text, measured, bound], evidence))
 }
 
 /// The rate is the slope of ln(E / E0), whose oscillation within a period is (w h) / 2 at most over hundreds of periods.

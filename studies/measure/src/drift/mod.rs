@@ -12,12 +12,12 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{Derived, Selection, Study, check_method, check_scene, check_steps};
 use crate::sweep::{Progress, in_parallel};
 use scenes::any::AnyScene;
 use scenes::invariants::{Balance, Entry};
-use scenes::observation::{Observation, norm};
-use scenes::run::{Outcome, Precision, Run};
+use scenes::observation::{Observation, largest, norm};
+use scenes::run::{Outcome, Precision, Run, method_from_id};
 use scenes::theory::ExpectedGrowth;
 use scenes::theory::Law;
 
@@ -171,6 +171,11 @@ impl Study for DriftStudy {
     fn claims(rows: &[Row]) -> Vec<Claim> {
         laws::claims(rows)
     }
+    fn check(row: &Row) -> Result<(), String> {
+        check_scene(&row.scene)?;
+        check_method(&row.method, method_from_id(&row.method).is_ok())?;
+        check_steps(1, row.h_s)
+    }
 }
 
 /// A long run of one scene, and the true account at each of its observations.
@@ -230,7 +235,8 @@ impl<'a> Track<'a> {
                     ..measured.partition_point(|(step, _)| *step <= end);
                 let values = measured[inside].iter().map(|(_, errors)| errors[i].1);
                 let complete = failed_at_s.is_none_or(|t| t > end as f64 * self.h_s);
-                let fold = |f: fn(f64, f64) -> f64| values.clone().reduce(f).filter(|_| complete);
+                // The least is the negative of the largest negative: a NaN stays in either.
+                let most = |sign: f64| largest(values.clone().map(|x| sign * x)).filter(|x| complete && x.is_finite());
                 rows.push(Row {
                     scene: self.scene.id().to_owned(),
                     method: method.id().to_owned(),
@@ -240,8 +246,8 @@ impl<'a> Track<'a> {
                     unit: drift.unit().to_owned(),
                     scale: scale(&self.truth[0], drift),
                     t_s: end as f64 * self.h_s,
-                    error_min: fold(f64::min),
-                    error_max: fold(f64::max),
+                    error_min: most(-1.0).map(|x| -x),
+                    error_max: most(1.0),
                     outcome: trajectory.outcome,
                     failed_at_s,
                     theory_law: theory.map(|t| t.law),

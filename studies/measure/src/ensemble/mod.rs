@@ -20,7 +20,7 @@ use crate::sweep::in_parallel;
 use draw::{Members, draw, with_a_rule};
 use lanes::runs_in_lanes;
 use scenes::any::AnyScene;
-use scenes::observation::{Observation, Quantity};
+use scenes::observation::{Observation, Quantity, largest};
 use scenes::run::Precision;
 use scenes::theory::ExpectedOrder;
 
@@ -231,7 +231,7 @@ fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: 
             worst: ranked.quantile(100),
             worst_member: ranked.worst_member,
             worst_start: start(scene, drawing.members.alone(ranked.worst_member).scene()),
-            scale: drawing.exact.iter().map(|exact| exact.scale(quantity)).fold(0.0, f64::max),
+            scale: largest(drawing.exact.iter().map(|exact| exact.scale(quantity))).unwrap_or(f64::NAN),
             theory_order,
         })
         .collect()

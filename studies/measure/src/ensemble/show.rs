@@ -1,10 +1,11 @@
 //! Table, charts and claims of an ensemble.
 
 use integrator::methods::MethodId;
-use reports::{Axis, Claim, Figure, Layer, Line, Series, Table, Verdict};
+use reports::{Axis, Claim, Figure, Layer, Line, Series, Table};
 use serde::Serialize;
 
 use super::Row;
+use crate::claim::{self, Evidence};
 use crate::convergence::tolerance;
 use crate::error::Error;
 use crate::order;
@@ -177,24 +178,22 @@ fn claim(sweep: &[&Row], name: &str, pick: fn(&Row) -> Option<f64>) -> Option<Cl
     let tolerance = tolerance(first.precision, samples.len());
     let limits = Limits { rounding_unit: unit, saturation: scale };
     let seen = order::observe(&samples, Expected::Order { order, tolerance }, limits);
-    let verdict = match seen.verdict {
-        verdict if verdict.passes() => Verdict::Holds,
-        order::Verdict::Capped | order::Verdict::SuperConvergent => Verdict::Broken,
-        _ => Verdict::NotTested,
+    let evidence = match seen.verdict {
+        order::Verdict::NotAsymptotic | order::Verdict::AtTheFloor => Evidence::Undecided,
+        verdict => Evidence::is(verdict.passes()),
     };
-    Some(Claim {
-        id: format!("ensemble.{}.{}.{}.{name}", first.scene, first.method, first.quantity.id()),
-        study: "ensemble".to_owned(),
-        statement: format!(
+    let texts = [
+        format!(
             "The {name} {} error of {} over {} starts of {} falls with its order",
             first.quantity.id(),
             first.method,
             first.members,
             first.scene
         ),
-        theory: format!("order {order} from every start"),
-        measured: seen.note,
-        bound: format!("{order} ± {tolerance}"),
-        verdict,
-    })
+        format!("order {order} from every start"),
+        seen.note,
+        format!("{order} ± {tolerance}"),
+    ];
+    let id = format!("{}.{}.{}.{name}", first.scene, first.method, first.quantity.id());
+    Some(claim::claim("ensemble", &id, texts, [evidence]))
 }

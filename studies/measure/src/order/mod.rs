@@ -9,6 +9,7 @@ mod verdict;
 mod window;
 
 use crate::fit;
+use scenes::observation::worse;
 use serde::{Deserialize, Serialize};
 pub use verdict::Verdict;
 use window::{Kind, Search};
@@ -88,7 +89,7 @@ pub fn observe(samples: &[Sample], expected: Expected, limits: Limits) -> Order 
     let kinds: Vec<Kind> = samples.iter().map(|s| window::kind(s, &limits)).collect();
     let at_floor = samples.iter().zip(&kinds).filter(|(_, k)| **k == Kind::AtFloor).filter_map(|(s, _)| s.error);
     let found = Order {
-        floor: at_floor.reduce(f64::max),
+        floor: at_floor.reduce(worse),
         local: window::local_orders(samples),
         ..Order::blank(Verdict::NotAsymptotic, String::new())
     };

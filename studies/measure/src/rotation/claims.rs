@@ -1,14 +1,16 @@
 //! What the rows show against theory.
 
 use integrator::methods::Conserved;
-use reports::{Claim, Verdict};
+use reports::Claim;
 
 use super::laws::nutation_factor;
-use super::long::Fate;
+use super::long::{DRIFT_END_S, Fate, POINTS};
 use super::orders::{Seen, orders};
 use super::row::{Experiment, Row};
+use crate::claim::{self, Evidence, largest};
 use crate::growth;
 use crate::study::{distinct, short};
+use scenes::run::Outcome;
 use scenes::scheme::{Rule, Scheme};
 use scenes::theory::Law;
 
@@ -29,9 +31,8 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: &str, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
-    let verdict = Verdict::from_comparison(holds);
-    Claim { id: format!("rotation.{id}"), study: "rotation".to_owned(), statement, theory, measured, bound, verdict }
+fn claim(id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Evidence>) -> Claim {
+    claim::claim("rotation", id, texts, evidence)
 }
 
 /// What theory says of the attitude of one scheme on one scene: its order, or `None` where the motion is reproduced exactly.
@@ -60,10 +61,13 @@ fn order_claims(rows: &[Row]) -> Vec<Claim> {
         let kinds = distinct(attitudes.iter().filter(|s| s.scheme == id).map(|s| expected_order(scheme, &s.subject)));
         for expected in kinds {
             let seen = of_scheme(expected);
-            let right = |s: &Seen| match expected {
-                Some(p) => s.finished && s.order.is_some_and(|q| (q - p).abs() <= ORDER_TOLERANCE),
-                None => s.finished && s.finest.is_some_and(|error| error <= EXACT),
-            };
+            let evidence = seen.iter().flat_map(|s| {
+                let number = match expected {
+                    Some(_) => Evidence::near(s.order, expected, ORDER_TOLERANCE),
+                    None => Evidence::within(s.finest, [0.0, EXACT]),
+                };
+                [Evidence::is(s.finished), number]
+            });
             let name = expected.map_or("exact".to_owned(), |p| format!("order-{p}"));
             let measured = seen.iter().map(|s| match expected {
                 Some(_) => format!("{} {}", s.subject, short(s.order)),
@@ -71,20 +75,25 @@ fn order_claims(rows: &[Row]) -> Vec<Claim> {
             });
             claims.push(claim(
                 &format!("{id}.{name}"),
-                match expected {
-                    Some(0.0) => {
-                        format!("{id} is inconsistent on {} scenes: its error does not fall with the step", seen.len())
-                    }
-                    Some(p) => format!("the attitude of {id} converges with order {p} on {} scenes", seen.len()),
-                    None => format!("{id} reproduces a quadratic angle exactly"),
-                },
-                expected.map_or("no error but rounding".to_owned(), |p| format!("order {p}")),
-                measured.collect::<Vec<_>>().join("; "),
-                match expected {
-                    Some(_) => format!("extrapolated order within {ORDER_TOLERANCE}"),
-                    None => format!("at most {EXACT:.0e} rad"),
-                },
-                seen.iter().all(|s| right(s)),
+                [
+                    match expected {
+                        Some(0.0) => {
+                            format!(
+                                "{id} is inconsistent on {} scenes: its error does not fall with the step",
+                                seen.len()
+                            )
+                        }
+                        Some(p) => format!("the attitude of {id} converges with order {p} on {} scenes", seen.len()),
+                        None => format!("{id} reproduces a quadratic angle exactly"),
+                    },
+                    expected.map_or("no error but rounding".to_owned(), |p| format!("order {p}")),
+                    measured.collect::<Vec<_>>().join("; "),
+                    match expected {
+                        Some(_) => format!("extrapolated order within {ORDER_TOLERANCE}"),
+                        None => format!("at most {EXACT:.0e} rad"),
+                    },
+                ],
+                evidence,
             ));
         }
     }
@@ -100,7 +109,7 @@ fn law_claim(row: &Row) -> Option<Claim> {
         _ => return None,
     };
     let subject = row.subject.replace(' ', "-");
-    row.claim(format!("rotation.{kind}.{subject}.{}", row.scheme), format!("{} {what} ({})", row.scheme, row.subject))
+    row.claim(&format!("{kind}.{subject}.{}", row.scheme), format!("{} {what} ({})", row.scheme, row.subject))
 }
 
 /// One claim a scheme and top, over all steps.
@@ -113,15 +122,20 @@ fn nutation_claims(rows: &[Row]) -> Vec<Claim> {
                 continue;
             }
             let list = |f: fn(&Row) -> Option<f64>| of.iter().map(|row| short(f(row))).collect::<Vec<_>>().join(", ");
-            let off = of.iter().map(|r| r.value.zip(r.theory).map_or(f64::INFINITY, |(a, b)| (a / b - 1.0).abs()));
-            let largest = off.fold(0.0, f64::max);
+            let off = largest(of.iter().map(|r| r.value.zip(r.theory).map(|(a, b)| (a / b - 1.0).abs())));
             claims.push(claim(
                 &format!("nutation.{subject}.{}", scheme.id()),
-                format!("{} multiplies the nutation of a {subject} in a step by the factor of theory", scheme.id()),
-                list(|row| row.theory),
-                format!("{} (largest relative difference {largest:.1e})", list(|row| row.value)),
-                "32 units in the last place: both sides are a few operations in f64".to_owned(),
-                of.iter().all(|row| row.agrees() == Some(true)),
+                [
+                    format!("{} multiplies the nutation of a {subject} in a step by the factor of theory", scheme.id()),
+                    list(|row| row.theory),
+                    format!(
+                        "{} (largest relative difference {})",
+                        list(|row| row.value),
+                        off.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.1e}"))
+                    ),
+                    "32 units in the last place: both sides are a few operations in f64".to_owned(),
+                ],
+                of.iter().map(|row| Evidence::is(row.agrees() == Some(true))),
             ));
         }
     }
@@ -141,20 +155,25 @@ fn disc_claims(rows: &[Row]) -> Vec<Claim> {
     by_scheme(rows, Experiment::Disc)
         .into_iter()
         .filter_map(|(scheme, rows)| {
-            let (factor, fate) = (nutation_factor(scheme, 2.0, 1.0)?, Fate::of(&rows)?);
+            let (factor, fate) = (nutation_factor(scheme, 2.0, 1.0)?, Fate::of(&rows));
             let growth = factor.ln();
-            let holds = match fate {
+            let as_told = |fate| match fate {
                 Fate::Damps => growth < -1e-9,
                 Fate::Survives => growth.abs() <= 1e-9,
                 _ => growth > 1e-9,
             };
             Some(claim(
                 &format!("disc.{}", scheme.id()),
-                format!("a disc at 60 rad/s with h = 1/60 s fares under {} as the nutation factor says", scheme.id()),
-                format!("factor {factor:.6} a step"),
-                fate.words(),
-                "above 1 grows, at 1 survives, below 1 is damped".to_owned(),
-                holds,
+                [
+                    format!(
+                        "a disc at 60 rad/s with h = 1/60 s fares under {} as the nutation factor says",
+                        scheme.id()
+                    ),
+                    format!("factor {factor:.6} a step"),
+                    fate.map_or_else(|| "unknown".to_owned(), Fate::words),
+                    "above 1 grows, at 1 survives, below 1 is damped".to_owned(),
+                ],
+                [Evidence::is(fate.is_some_and(as_told))],
             ))
         })
         .collect()
@@ -185,13 +204,15 @@ fn destination_claims(rows: &[Row]) -> Vec<Claim> {
     DESTINATIONS
         .iter()
         .filter_map(|&(start, scheme, goal)| {
-            let path: Vec<f64> = rows
+            let run: Vec<&Row> = rows
                 .iter()
                 .filter(|row| row.experiment == Experiment::LongRun && row.subject == start && row.scheme == scheme)
                 .filter(|row| row.quantity == "axis coordinate")
-                .filter_map(|row| row.value)
                 .collect();
-            let (&first, &last) = (path.first()?, path.last()?);
+            let on_axis = |row: &Row| row.value.is_some_and(|x| (0.0..=1.0).contains(&x));
+            let is_complete =
+                run.len() as u64 > POINTS && run.iter().all(|row| row.outcome == Outcome::Finished && on_axis(row));
+            let [first, last] = [run.first()?, run.last()?].map(|row| row.value.unwrap_or(f64::NAN));
             // Within a period the coordinate swings by the order of h; a fifth of the distance from the nearer of the two
             // axes is far outside it.
             let near = first.min(1.0 - first);
@@ -203,15 +224,19 @@ fn destination_claims(rows: &[Row]) -> Vec<Claim> {
             };
             Some(claim(
                 &format!("destination.{}.{scheme}", start.replace(' ', "-")),
-                format!("a body ({start}) under {scheme} {theory}"),
-                theory.to_owned(),
-                format!("axis coordinate {first:.4} at the start, {last:.4} at the end (0 most, 1 least inertia)"),
-                match goal {
-                    Goal::Above(least) => format!("at least {least} at the end"),
-                    Goal::Rises | Goal::Falls => "by a fifth of the distance from the nearer axis, or more".to_owned(),
-                    Goal::Stays => "within 1e-3".to_owned(),
-                },
-                holds,
+                [
+                    format!("a body ({start}) under {scheme} {theory}"),
+                    theory.to_owned(),
+                    format!("axis coordinate {first:.4} at the start, {last:.4} at the end (0 most, 1 least inertia)"),
+                    match goal {
+                        Goal::Above(least) => format!("at least {least} at the end"),
+                        Goal::Rises | Goal::Falls => {
+                            "by a fifth of the distance from the nearer axis, or more".to_owned()
+                        }
+                        Goal::Stays => "within 1e-3".to_owned(),
+                    },
+                ],
+                [Evidence::is(is_complete), Evidence::is(holds)],
             ))
         })
         .collect()
@@ -242,21 +267,32 @@ fn drift_claims(rows: &[Row]) -> Vec<Claim> {
                 Conserved::Momentum => (&["|L| / |L0| - 1", "angle of L"], "momentum"),
             };
             let of_kind: Vec<&&Row> = rows.iter().filter(|row| names.contains(&row.quantity.as_str())).collect();
-            let largest = of_kind.iter().filter_map(|row| row.value).map(f64::abs).fold(0.0, f64::max);
             let Some(last) = of_kind.last() else { continue };
+            let most = largest(of_kind.iter().map(|row| row.value.map(f64::abs)));
             // A few roundings of a few units a step, all with one sign at worst.
             let bound = 8.0 * f64::EPSILON * (last.t_s / last.h_s);
             claims.push(claim(
                 &format!("conserves.{what}.{}", scheme.id()),
-                format!("{} keeps {what} on a free body to rounding{}", scheme.id(), wrong(scheme)),
-                "conserved".to_owned(),
-                format!("largest relative change {largest:.2e}"),
-                format!("at most {bound:.1e}: 8 units in the last place a step"),
-                of_kind.iter().all(|row| row.value.is_some()) && largest <= bound,
+                [
+                    format!("{} keeps {what} on a free body to rounding{}", scheme.id(), wrong(scheme)),
+                    "conserved".to_owned(),
+                    most.map_or_else(
+                        || "a value is missing".to_owned(),
+                        |x| format!("largest relative change {x:.2e}"),
+                    ),
+                    format!("at most {bound:.1e}: 8 units in the last place a step"),
+                ],
+                [Evidence::within(most, [0.0, bound]), Evidence::is(ran_to_end(&rows))],
             ));
         }
     }
     claims
+}
+
+/// Whether a drift run finished, and every number of it is there.
+fn ran_to_end(rows: &[&Row]) -> bool {
+    rows.last().is_some_and(|row| row.t_s == DRIFT_END_S)
+        && rows.iter().all(|row| row.outcome == Outcome::Finished && row.value.is_some_and(f64::is_finite))
 }
 
 /// A scheme whose step changes T by a term of h^2 that has one sign loses or gains linearly.
@@ -266,16 +302,20 @@ fn law_claims(rows: &[Row]) -> Vec<Claim> {
         .filter(|(scheme, _)| super::laws::energy_changes_with_one_sign(*scheme))
         .filter_map(|(scheme, rows)| {
             let (seen, largest) = law(&rows, "T / T0 - 1")?;
+            let evidence =
+                if seen == Law::Unclassified { Evidence::Undecided } else { Evidence::is(seen == Law::Linear) };
             Some(claim(
                 &format!("growth.energy.{}", scheme.id()),
-                format!(
-                    "the energy error of {} grows linearly: every step changes T by h^2 / 2 v . J v or less",
-                    scheme.id()
-                ),
-                Law::Linear.to_string(),
-                format!("{seen}, largest relative error {largest:.2e}"),
-                "the same law".to_owned(),
-                seen == Law::Linear,
+                [
+                    format!(
+                        "the energy error of {} grows linearly: every step changes T by h^2 / 2 v . J v or less",
+                        scheme.id()
+                    ),
+                    Law::Linear.to_string(),
+                    format!("{seen}, largest relative error {largest:.2e}"),
+                    "the same law".to_owned(),
+                ],
+                [evidence, Evidence::is(ran_to_end(&rows))],
             ))
         })
         .collect()
@@ -289,7 +329,7 @@ fn wrong(scheme: Scheme) -> &'static str {
 pub(super) fn law(rows: &[&Row], quantity: &str) -> Option<(Law, f64)> {
     let rows: Vec<&&Row> = rows.iter().filter(|row| row.quantity == quantity).collect();
     let first = rows.first()?;
-    let envelope = growth::running_maximum(rows.iter().filter_map(|row| Some((row.t_s, row.value?.abs()))));
+    let envelope = growth::running_maximum(rows.iter().map(|row| (row.t_s, row.value.map_or(f64::NAN, f64::abs))));
     let steps = rows.last()?.t_s / first.h_s;
     let largest = envelope.last()?.error;
     Some((growth::classify(&envelope, 8.0 * f64::EPSILON * steps.sqrt().max(64.0)).law, largest))
@@ -299,26 +339,31 @@ fn same_motion_claims(rows: &[Row]) -> Vec<Claim> {
     rows.iter()
         .filter(|row| row.experiment == Experiment::SameMotion)
         .filter_map(|row| {
-            let (value, steps) = (row.value?, row.t_s / row.h_s);
+            let steps = row.t_s / row.h_s;
             let same = row.scheme.starts_with("semi-implicit");
             // Either form rounds a few units in the last place a step, and the motion carries earlier roundings along.
             let bound = 64.0 * f64::EPSILON * steps;
-            let (statement, holds) =
-                if same { ("are the same motion", value <= bound) } else { ("are two motions", value > 1e3 * bound) };
+            let (statement, allowed) = if same {
+                ("are the same motion", [0.0, bound])
+            } else {
+                ("are two motions", [1e3 * bound, f64::INFINITY])
+            };
             let (method, _) = row.scheme.split_once('/')?;
             // Where the body spins about one axis, the world frame and the body frame are one for explicit Euler too.
             (same || row.subject != "principal-axis-torque").then(|| {
                 claim(
                     &format!("same-motion.{}.{method}", row.subject),
-                    format!("{method} with world omega and with body omega {statement} on {}", row.subject),
-                    statement.to_owned(),
-                    format!("{value:.2e} apart at most"),
-                    format!(
-                        "{} {:.1e}",
-                        if same { "at most" } else { "more than" },
-                        if same { bound } else { 1e3 * bound }
-                    ),
-                    holds,
+                    [
+                        format!("{method} with world omega and with body omega {statement} on {}", row.subject),
+                        statement.to_owned(),
+                        row.value.map_or_else(|| "a run failed".to_owned(), |x| format!("{x:.2e} apart at most")),
+                        format!(
+                            "{} {:.1e}",
+                            if same { "at most" } else { "more than" },
+                            if same { bound } else { 1e3 * bound }
+                        ),
+                    ],
+                    [Evidence::within(row.value, allowed)],
                 )
             })
         })
@@ -334,11 +379,13 @@ fn published_claims(rows: &[Row]) -> Vec<Claim> {
             let right = of.iter().filter(|row| row.agrees() == Some(true)).count();
             claim(
                 &format!("published.{subject}.{scheme}"),
-                format!("the numbers printed by {subject} for {scheme} are reproduced to their last digit"),
-                format!("{} of {}", of.len(), of.len()),
-                format!("{right} of {}", of.len()),
-                "half a unit of the last printed digit".to_owned(),
-                right == of.len() && right > 0,
+                [
+                    format!("the numbers printed by {subject} for {scheme} are reproduced to their last digit"),
+                    format!("{} of {}", of.len(), of.len()),
+                    format!("{right} of {}", of.len()),
+                    "half a unit of the last printed digit".to_owned(),
+                ],
+                of.iter().map(|row| Evidence::is(row.agrees() == Some(true))),
             )
         })
         .collect()

@@ -8,13 +8,14 @@ use super::laws::symmetric;
 use super::row::{Experiment, Row};
 use scenes::TorqueFreeSpin;
 use scenes::any::AnyScene;
+use scenes::observation::largest;
 use scenes::run::{Outcome, Precision, Run, Trajectory};
 use scenes::scheme::Scheme;
 
 /// Step of the long runs, s.
 pub const LONG_STEP_S: f64 = 0.01;
 /// Points kept of a long run.
-const POINTS: u64 = 64;
+pub(super) const POINTS: u64 = 64;
 
 /// The starts of the long runs: moments 1, 2 and 3 kg m^2, near the axis of most inertia, near that of least, and neither.
 pub fn long_starts() -> [(&'static str, TorqueFreeSpin); 3] {
@@ -84,7 +85,7 @@ fn disc_run(body: &TorqueFreeSpin, scheme: Scheme) -> Vec<Row> {
         .map(|(step, _)| *step)
         .or(trajectory.failed_step);
     let flipped = all.iter().find(|(_, at)| at.omega.z.to_f64() < 0.0).map(|(step, _)| *step);
-    let widest = all.iter().map(|(_, at)| tilt(at)).fold(0.0, f64::max);
+    let widest = largest(all.iter().map(|(_, at)| tilt(at))).filter(|x| x.is_finite());
     let last = all.last().map(|(_, at)| tilt(at));
     let event = |name: &str, step: Option<u64>| Row {
         at_step: step,
@@ -93,7 +94,7 @@ fn disc_run(body: &TorqueFreeSpin, scheme: Scheme) -> Vec<Row> {
     vec![
         event("steps to tenfold energy", blown),
         event("steps to the first flip", flipped),
-        row.measured("largest angle between L and the axis", "rad", Some(widest)),
+        row.measured("largest angle between L and the axis", "rad", widest),
         row.measured("last angle between L and the axis", "rad", last.filter(|_| trajectory.failed_step.is_none())),
     ]
 }
@@ -145,12 +146,15 @@ impl Fate {
 }
 
 /// Stretches of a drift run.
-const STRETCHES: u64 = 128;
+pub(super) const STRETCHES: u64 = 128;
+
+/// End of a drift run, s.
+pub(super) const DRIFT_END_S: f64 = 32.0;
 
 /// Drift of T, |L| and the direction of L on the generic body: first-order schemes lose a few per cent at the end.
 pub fn drift(body: &TorqueFreeSpin, schemes: &[Scheme]) -> Vec<Row> {
     // Some ten periods of the body: a law of growth is not seen in two.
-    schemes.iter().flat_map(|&scheme| drift_of(body, scheme, 32.0)).collect()
+    schemes.iter().flat_map(|&scheme| drift_of(body, scheme, DRIFT_END_S)).collect()
 }
 
 fn drift_of(body: &TorqueFreeSpin, scheme: Scheme, end_s: f64) -> Vec<Row> {
@@ -191,13 +195,11 @@ pub fn same_motion(scene: &dyn AnyScene, schemes: [Scheme; 2], steps: u64) -> Ve
         return Vec::new();
     };
     let runs = [one, other];
-    if runs.iter().any(|run| run.outcome != Outcome::Finished) {
-        return Vec::new();
-    }
+    let finished = runs.iter().all(|run| run.outcome == Outcome::Finished);
     let apart = |[a, b]: &[Trajectory; 2]| {
         let both = a.seen.iter().zip(&b.seen);
-        both.flat_map(|((_, x), (_, y))| x.distances(y)).map(|(_, d)| d).fold(0.0, f64::max)
+        largest(both.flat_map(|((_, x), (_, y))| x.distances(y)).map(|(_, d)| d)).filter(|d| finished && d.is_finite())
     };
     let row = Row::new(Experiment::SameMotion, scene.id(), schemes[0], end_s / steps as f64, &runs[0]);
-    vec![row.measured(&format!("largest distance to {}", schemes[1].id()), "rad or rad/s", Some(apart(&runs)))]
+    vec![row.measured(&format!("largest distance to {}", schemes[1].id()), "rad or rad/s", apart(&runs))]
 }

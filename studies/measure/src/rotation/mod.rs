@@ -18,7 +18,7 @@ pub use row::{Experiment, Row};
 pub use scenes::scheme::{Rule, Scheme};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{Derived, Selection, Study, check_method, check_steps};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::run::{Outcome, Trajectory};
@@ -60,6 +60,10 @@ impl Study for Rotation {
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         claims::claims(rows)
+    }
+    fn check(row: &Row) -> Result<(), String> {
+        check_method(&row.scheme, Scheme::is_known(&row.scheme))?;
+        check_steps(1, row.h_s)
     }
 }
 

@@ -99,6 +99,6 @@ fn seen(sweep: &[&Row]) -> Seen {
         finest: points.last().map(|p| p.1),
         reference: points.iter().rev().nth(2).map(|&(h, e)| (e, h)),
         evaluations: first.evaluations as f64 / steps,
-        finished: sweep.iter().all(|row| row.outcome == Outcome::Finished),
+        finished: sweep.iter().all(|row| row.outcome == Outcome::Finished && row.value.is_some_and(f64::is_finite)),
     }
 }

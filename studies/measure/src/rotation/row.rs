@@ -1,8 +1,10 @@
 //! One measured number, with what theory says of it.
 
-use reports::{Claim, Verdict};
+use reports::Claim;
 use serde::{Deserialize, Serialize};
 
+use crate::claim;
+use crate::claim::Evidence;
 use scenes::run::{Outcome, Trajectory};
 use scenes::scheme::Scheme;
 
@@ -91,21 +93,22 @@ impl Row {
 
     /// Whether the number agrees with theory, where theory says anything.
     pub fn agrees(&self) -> Option<bool> {
-        let (theory, tolerance) = (self.theory?, self.tolerance?);
-        Some(self.value.is_some_and(|value| (value - theory).abs() <= tolerance))
+        Some(self.evidence(self.theory?, self.tolerance?) == Evidence::Inside)
     }
 
-    /// As a claim.
-    pub fn claim(&self, id: String, statement: String) -> Option<Claim> {
+    fn evidence(&self, theory: f64, tolerance: f64) -> Evidence {
+        Evidence::near(self.value.filter(|_| self.outcome == Outcome::Finished), Some(theory), tolerance)
+    }
+
+    /// As a claim, where theory says anything.
+    pub fn claim(&self, id: &str, statement: String) -> Option<Claim> {
         let (theory, tolerance) = (self.theory?, self.tolerance?);
-        Some(Claim {
-            id,
-            study: "rotation".to_owned(),
+        let texts = [
             statement,
-            theory: format!("{theory:.12e} {}", self.unit),
-            measured: self.value.map_or_else(|| "the run failed".to_owned(), |v| format!("{v:.12e} {}", self.unit)),
-            bound: format!("within {tolerance:.1e} of theory"),
-            verdict: Verdict::from_comparison(self.agrees() == Some(true)),
-        })
+            format!("{theory:.12e} {}", self.unit),
+            self.value.map_or_else(|| "the run failed".to_owned(), |v| format!("{v:.12e} {}", self.unit)),
+            format!("within {tolerance:.1e} of theory"),
+        ];
+        Some(claim::claim("rotation", id, texts, [self.evidence(theory, tolerance)]))
     }
 }

@@ -8,6 +8,7 @@
 use faer::{Mat, c64, fx128};
 use integrator::{Real, Single};
 
+use scenes::observation::{largest, worse};
 use scenes::run::Precision;
 use scenes::stepping::{Stepping, coordinates, dimension};
 use scenes::theory::StabilityLimit;
@@ -82,7 +83,7 @@ fn columns(stepping: &Stepping<'_>, h_s: f64, test: bool) -> Option<Amplificatio
 }
 
 fn proportional(a: &[fx128], b: &[fx128], factor: f64) -> bool {
-    let size = a.iter().chain(b).map(|x| x.to_f64().abs()).fold(1.0, f64::max);
+    let size = a.iter().chain(b).map(|x| x.to_f64().abs()).fold(1.0, worse);
     a.iter().zip(b).all(|(&x, &y)| (x - y * fx128::lit(factor)).to_f64().abs() <= SUPERPOSITION * size)
 }
 
@@ -95,7 +96,7 @@ impl Amplification {
     /// max |lambda|; `None` where the matrix is not finite.
     pub fn spectral_radius(&self) -> Option<f64> {
         let values = self.eigenvalues()?;
-        Some(values.iter().map(|l| l.re.hypot(l.im)).fold(0.0, f64::max))
+        largest(values.iter().map(|l| l.re.hypot(l.im)))
     }
 
     /// Real part of an eigenvector to the eigenvalue of greatest modulus: the direction that grows fastest.
@@ -118,7 +119,7 @@ impl Amplification {
         }
         let values = self.eigenvalues()?;
         let not_neutral = values.iter().filter(|l| (l.re - 1.0).hypot(l.im) > NEUTRAL);
-        Some(not_neutral.map(|l| l.re.hypot(l.im)).fold(0.0, f64::max) <= 1.0 + ROUNDING)
+        Some(not_neutral.map(|l| l.re.hypot(l.im)).fold(0.0, worse) <= 1.0 + ROUNDING)
     }
 
     fn faer(&self) -> Mat<f64> {

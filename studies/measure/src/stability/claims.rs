@@ -1,15 +1,16 @@
 //! What the rows show, against theory.
 
-use reports::{Claim, Verdict};
+use reports::Claim;
 
 use super::bisect::WIDTH;
 use super::failure::Failure;
 use super::limits::UNSEEN;
 use super::maps::{self, Grid, boundary_distance};
-use super::models::Scheme;
+use super::models::{Scheme, modulus, stability_function};
 use super::spin::{FACTOR_TOLERANCE, STEPS, SpinScheme};
 use super::tables::limit_words;
 use super::{Part, Row};
+use crate::claim::{self, Evidence, largest};
 use crate::study::distinct;
 use scenes::run::Precision;
 
@@ -41,17 +42,8 @@ pub fn all(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: &str, statement: String, theory: String, measured: String, bound: String, holds: bool) -> Claim {
-    let study = "stability".to_owned();
-    Claim {
-        id: format!("stability.{id}"),
-        study,
-        statement,
-        theory,
-        measured,
-        bound,
-        verdict: Verdict::from_comparison(holds),
-    }
+fn claim(id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Evidence>) -> Claim {
+    claim::claim("stability", id, texts, evidence)
 }
 
 /// Whether the bracket of a row says what theory says, and is narrow enough.
@@ -96,152 +88,178 @@ fn bracket_words(row: &Row) -> String {
 }
 
 fn limit(row: &Row) -> Claim {
-    // Growth beyond the limit that is too slow for every run decides nothing.
-    let is_tested = row.low.is_some() || row.high.is_some();
-    let claim = claim(
-        &format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id()),
+    let texts = [
         format!("the largest stable step of {} on {} in {}", row.method, row.scene, row.precision.id()),
         row.theory.map_or_else(|| "unknown".to_owned(), limit_words),
         bracket_words(row),
         format!("the bracket contains it and is narrower than {:.0} %", 100.0 * widest(row)),
-        bracket_agrees(row),
-    );
-    if is_tested { claim } else { Claim { verdict: Verdict::NotTested, ..claim } }
+    ];
+    // Growth beyond the limit that is too slow for every run decides nothing.
+    let is_tested = row.low.is_some() || row.high.is_some();
+    let id = format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id());
+    claim(&id, texts, [if is_tested { Evidence::is(bracket_agrees(row)) } else { Evidence::Undecided }])
+}
+
+/// A number in words, where there is one.
+fn number(x: Option<f64>, unit: &str) -> String {
+    x.map_or_else(|| "not measured".to_owned(), |x| format!("{x:.12e} {unit}"))
 }
 
 fn rate(row: &Row) -> Claim {
-    let (measured, theory) = (row.measured.unwrap_or(f64::NAN), row.theory.unwrap_or(f64::NAN));
     let z = row.h_omega.unwrap_or(f64::NAN);
-    claim(
-        &format!("rate.{}.{}.{z}", row.scene, row.method),
+    let texts = [
         format!("growth of {} on {} at {z} time scales a step", row.method, row.scene),
-        format!("{theory:.12e} a step"),
-        format!("{measured:.12e} a step"),
+        number(row.theory, "a step"),
+        number(row.measured, "a step"),
         format!("relative difference at most {RATE:.0e}"),
-        (measured / theory - 1.0).abs() <= RATE,
-    )
+    ];
+    let ratio = row.measured.zip(row.theory).map(|(measured, theory)| measured / theory);
+    claim(&format!("rate.{}.{}.{z}", row.scene, row.method), texts, [Evidence::near(ratio, Some(1.0), RATE)])
 }
 
 fn unconditional(row: &Row) -> Claim {
-    let (measured, theory) = (row.measured.unwrap_or(f64::NAN), row.theory.unwrap_or(f64::NAN));
     let z = row.h_omega.unwrap_or(f64::NAN);
     // One step solves a system whose matrix has condition 1 + z^2 in these coordinates.
     let tolerance = 16.0 * f64::EPSILON * (1.0 + z * z);
-    claim(
-        &format!("unconditional.{}.{}.{z}", row.method, row.unit),
+    let texts = [
         format!("{} of {} at h omega = {z}", row.quantity, row.method),
-        format!("{theory:.12e} {}", row.unit),
-        format!("{measured:.12e} {}", row.unit),
+        number(row.theory, &row.unit),
+        number(row.measured, &row.unit),
         format!("difference at most {tolerance:.1e}"),
-        (measured - theory).abs() <= tolerance,
-    )
+    ];
+    let evidence = [Evidence::near(row.measured, row.theory, tolerance)];
+    claim(&format!("unconditional.{}.{}.{z}", row.method, row.unit), texts, evidence)
 }
 
 fn drag(row: &Row) -> Claim {
     let holds = row.low.zip(row.high).zip(row.theory).is_some_and(|((low, high), theory)| {
         contains(low, high, theory, row.precision) && high - low <= BRACKET * high
     });
-    claim(
-        &format!("quadratic-drag.{}", row.quantity.replace(' ', "-")),
+    let texts = [
         format!("the largest {} of explicit Euler", row.quantity),
         row.theory.map_or_else(String::new, limit_words),
         bracket_words(row),
         format!("the bracket contains it and is narrower than {:.0} %", 100.0 * BRACKET),
-        holds,
-    )
+    ];
+    claim(&format!("quadratic-drag.{}", row.quantity.replace(' ', "-")), texts, [Evidence::is(holds)])
 }
 
 fn blow_up(row: &Row) -> Claim {
-    let (measured, bound) = (row.measured.unwrap_or(f64::NAN), row.theory.unwrap_or(f64::NAN));
-    claim(
-        &format!("blow-up.{}", row.h_s.unwrap_or(f64::NAN)),
-        format!("a free thin body blows up in finite time with h = {} s", row.h_s.unwrap_or(f64::NAN)),
+    let h = row.h_s.unwrap_or(f64::NAN);
+    let bound = row.theory.unwrap_or(f64::NAN);
+    let texts = [
+        format!("a free thin body blows up in finite time with h = {h} s"),
         format!("not before {bound:.4} s"),
-        format!("{measured:.4} s, {}", row.failure),
+        format!("{:.4} s, {}", row.measured.unwrap_or(f64::NAN), row.failure),
         "after the bound, at an accelerating pace, and before a thousand times it".to_owned(),
-        measured >= bound && measured <= 1000.0 * bound && row.failure == Failure::FiniteTimeBlowUp,
-    )
+    ];
+    let in_time = Evidence::within(row.measured, [bound, 1000.0 * bound]);
+    claim(&format!("blow-up.{h}"), texts, [in_time, Evidence::is(row.failure == Failure::FiniteTimeBlowUp)])
 }
 
-/// The grid that the cells of a map were measured on.
-fn grid_of(rows: &[&Row], full: Grid) -> Grid {
-    if rows.len() == full.nx * full.ny { full } else { full.coarse() }
+/// The grid that the cells of a map were measured on: in full, or with a third of the cells each way. `None` where a cell is
+/// missing or in another place.
+fn grid_of(rows: &[&Row], full: Grid) -> Option<Grid> {
+    let is_at = |row: &Row, x: f64, y: f64| row.h_omega == Some(x) && row.value == Some(y);
+    [full, full.coarse()].into_iter().find(|grid| {
+        let place = |k: usize| (grid.x_at(k % grid.nx), grid.y_at(k / grid.nx));
+        rows.len() == grid.nx * grid.ny && (0..).zip(rows).all(|(k, row)| is_at(row, place(k).0, place(k).1))
+    })
 }
 
-/// The measured map of a scheme as (h omega, zeta, bounded).
-fn damped_cells(rows: &[&Row]) -> Vec<(f64, f64, bool)> {
-    rows.iter().filter_map(|row| Some((row.h_omega?, row.value?, row.measured? > 0.5))).collect()
+/// The measured map of a scheme as (h omega, zeta, bounded); `None` where a cell is not measured.
+fn damped_cells(rows: &[&Row]) -> Option<Vec<(f64, f64, bool)>> {
+    let bounded = |row: &Row| row.measured.filter(|x| *x == 0.0 || *x == 1.0).map(|x| x == 1.0);
+    rows.iter().map(|row| Some((row.h_omega?, row.value?, bounded(row)?))).collect()
 }
 
-/// Largest distance of a damped oscillator's map from a theory, in cells; the rows are those of one scheme.
-pub fn damped_distance(rows: &[&Row], theory: impl Fn(f64) -> f64) -> f64 {
-    boundary_distance(&damped_cells(rows), &grid_of(rows, maps::DAMPED), theory)
+/// Largest distance of a damped oscillator's map from a theory, in cells; the rows are those of one scheme. `None` where a cell
+/// is missing.
+pub fn damped_distance(rows: &[&Row], theory: impl Fn(f64) -> f64) -> Option<f64> {
+    Some(boundary_distance(&damped_cells(rows)?, &grid_of(rows, maps::DAMPED)?, theory))
+}
+
+/// The rows of one part, method by method.
+fn by_method(rows: &[Row], part: Part) -> Vec<(&str, Vec<&Row>)> {
+    let of_part = || rows.iter().filter(|row| row.part == part);
+    let methods = distinct(of_part().map(|row| row.method.as_str()));
+    methods.into_iter().map(|method| (method, of_part().filter(|row| row.method == method).collect())).collect()
+}
+
+/// The largest of some numbers in words.
+fn at_most(x: Option<f64>, words: impl Fn(f64) -> String) -> String {
+    x.map_or_else(|| "a cell is missing".to_owned(), words)
 }
 
 fn damped_maps(rows: &[Row]) -> Vec<Claim> {
-    let of = |scheme: Scheme| -> Vec<&Row> {
-        rows.iter().filter(|row| row.part == Part::DampedMap && row.method == scheme.id()).collect()
-    };
-    let present = Scheme::ALL.into_iter().map(|scheme| (scheme, of(scheme))).filter(|(_, cells)| !cells.is_empty());
-    present
-        .map(|(scheme, cells)| {
-            let distance = damped_distance(&cells, |zeta| scheme.limit(zeta));
-            claim(
-                &format!("map.damped.{}", scheme.id()),
-                format!("the boundary of {} on the damped oscillator lies on theory's curve", scheme.title()),
+    by_method(rows, Part::DampedMap)
+        .into_iter()
+        .map(|(method, cells)| {
+            let scheme = Scheme::ALL.into_iter().find(|scheme| scheme.id() == method);
+            let distance = scheme.and_then(|scheme| damped_distance(&cells, |zeta| scheme.limit(zeta)));
+            let title = scheme.map_or(method, |scheme| scheme.title());
+            let texts = [
+                format!("the boundary of {title} on the damped oscillator lies on theory's curve"),
                 "the limit in h omega as a function of zeta".to_owned(),
-                format!("at most {distance:.2} cells away"),
+                at_most(distance, |x| format!("at most {x:.2} cells away")),
                 format!("at most {ONE_CELL} cell"),
-                distance <= ONE_CELL,
-            )
+            ];
+            claim(&format!("map.damped.{method}"), texts, [Evidence::within(distance, [0.0, ONE_CELL])])
         })
         .collect()
 }
 
 fn spin_maps(rows: &[Row]) -> Vec<Claim> {
-    SpinScheme::ALL
+    by_method(rows, Part::SpinMap)
         .into_iter()
-        .filter_map(|scheme| {
-            let cells = rows.iter().filter(|row| row.part == Part::SpinMap && row.method == scheme.id());
-            let worst = cells
-                .filter_map(|row| {
-                    // Measured is a nutation after several steps; one that has died out is lost in rounding.
-                    let [measured, theory] = [row.measured?, row.theory?].map(|factor| factor.powi(STEPS));
-                    Some((measured - theory).abs() / theory.max(1.0) / f64::from(STEPS))
-                })
-                // NaN is the worst.
-                .reduce(|a, b| if b.is_nan() || b > a { b } else { a })?;
-            Some(claim(
-                &format!("map.spin.{}", scheme.id()),
-                format!("nutation factor in one step: {}", scheme.title()),
+        .map(|(method, cells)| {
+            let scheme = SpinScheme::ALL.into_iter().find(|scheme| scheme.id() == method);
+            let worst = largest(cells.iter().map(|row| {
+                // Measured is a nutation after several steps; one that has died out is lost in rounding.
+                let [measured, theory] = [row.measured?, row.theory?].map(|factor| factor.powi(STEPS));
+                Some((measured - theory).abs() / theory.max(1.0) / f64::from(STEPS))
+            }));
+            let texts = [
+                format!("nutation factor in one step: {}", scheme.map_or(method, |scheme| scheme.title())),
                 "the factor of the linearised spin".to_owned(),
-                format!("largest difference {worst:.1e}"),
+                at_most(worst, |x| format!("largest difference {x:.1e}")),
                 format!("at most {FACTOR_TOLERANCE:.0e} in every cell"),
-                worst <= FACTOR_TOLERANCE,
-            ))
+            ];
+            let evidence =
+                [Evidence::within(worst, [0.0, FACTOR_TOLERANCE]), Evidence::is(grid_of(&cells, maps::SPIN).is_some())];
+            claim(&format!("map.spin.{method}"), texts, evidence)
         })
         .collect()
 }
 
 fn regions(rows: &[Row]) -> Vec<Claim> {
-    let cells = || rows.iter().filter(|row| row.part == Part::Region);
-    distinct(cells().map(|row| row.method.as_str()))
+    by_method(rows, Part::Region)
         .into_iter()
-        .map(|method| {
-            let worst = cells()
-                .filter(|row| row.method == method && row.theory.is_some_and(|r| r < POLE))
-                .filter_map(|row| Some((row.measured? - row.theory?).abs() / row.theory?.max(1.0)))
-                .fold(0.0_f64, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
-            claim(
-                &format!("map.region.{method}"),
+        .map(|(method, cells)| {
+            let worst = largest(cells.iter().filter(|row| !is_pole(row)).map(|row| {
+                let (measured, theory) = row.measured.zip(row.theory)?;
+                Some((measured - theory).abs() / theory.max(1.0))
+            }));
+            let texts = [
                 format!("one step of {method} multiplies y' = lambda y by |R(h lambda)| over the complex plane"),
                 "the stability function".to_owned(),
-                format!("largest difference {worst:.1e}"),
+                at_most(worst, |x| format!("largest difference {x:.1e}")),
                 format!("at most {REGION_TOLERANCE:.0e}"),
-                worst <= REGION_TOLERANCE,
-            )
+            ];
+            let evidence = [
+                Evidence::within(worst, [0.0, REGION_TOLERANCE]),
+                Evidence::is(grid_of(&cells, maps::REGION).is_some()),
+            ];
+            claim(&format!("map.region.{method}"), texts, evidence)
         })
         .collect()
+}
+
+/// Whether a cell lies at a pole of R, where there is nothing to compare.
+fn is_pole(row: &Row) -> bool {
+    let method = maps::ONE_STEP.into_iter().find(|method| method.id() == row.method);
+    let at = method.zip(row.h_omega.zip(row.value));
+    at.is_some_and(|(method, z)| !(modulus(stability_function(method, z)) < POLE))
 }
 
 /// A step of at most 4 stages, or one linear system, near a pole: a few hundred roundings.
@@ -270,16 +288,14 @@ fn pictures(rows: &[Row]) -> Vec<Claim> {
             let curves = rows.iter().filter(|row| row.part == Part::Picture && row.scene == id);
             let seen = distinct(curves.map(|row| row.failure));
             let words: Vec<&str> = seen.iter().map(|failure| failure.words()).collect();
-            (!seen.is_empty()).then(|| {
-                claim(
-                    &format!("picture.{id}"),
-                    format!("the run of the picture '{id}' is seen to fail in this way"),
-                    wanted.to_string(),
-                    words.join("; "),
-                    "one curve shows it".to_owned(),
-                    seen.contains(&wanted),
-                )
-            })
+            let texts = [
+                format!("the run of the picture '{id}' is seen to fail in this way"),
+                wanted.to_string(),
+                words.join("; "),
+                "one curve shows it".to_owned(),
+            ];
+            let shown = Evidence::is(seen.contains(&wanted));
+            (!seen.is_empty()).then(|| claim(&format!("picture.{id}"), texts, [shown]))
         })
         .collect()
 }

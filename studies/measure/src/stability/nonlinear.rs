@@ -8,6 +8,7 @@ use super::bisect::{Found, bracket};
 use super::failure::Failure;
 use super::spin::{blow_up_bound, thin_body};
 use super::{Part, Row};
+use scenes::observation::largest;
 use scenes::run::Precision;
 use scenes::{BouncingBall, Pendulum, QuadraticDrag};
 
@@ -168,10 +169,10 @@ fn ball_row(h: f64) -> Row {
         s = ball.contact(&before, SemiImplicitEuler.step(&ball, 0.0, h, s));
         errors.push((f64::from(i) * h, energy(&s) / start - 1.0));
     }
-    let worst = errors.iter().map(|(_, e)| e.abs()).fold(0.0, f64::max);
+    let worst = largest(errors.iter().map(|(_, e)| e.abs()));
     Row {
         h_s: Some(h),
-        measured: Some(worst),
+        measured: worst.filter(|x| x.is_finite()),
         failure: Failure::of_invariant(&errors),
         steps: 4096,
         ..Row::new(Part::Ball, "bouncing-ball", "semi-implicit-euler", Precision::F64, "largest energy error", "1")

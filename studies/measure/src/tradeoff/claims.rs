@@ -1,13 +1,14 @@
 //! What the rows show, against theory. No claim is made about a time: times are not the same twice.
 
 use integrator::methods::MethodId;
-use reports::{Claim, Verdict};
+use reports::Claim;
 
 use super::candidate::Candidate;
 use super::duel_tables::question_row;
 use super::ucurve::{Minimum, minima};
 use super::verdict::duels;
 use super::{Charge, Part, Row};
+use crate::claim::{self, Evidence};
 use crate::study::{distinct, short};
 
 pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
@@ -18,25 +19,27 @@ pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
     claims
 }
 
-fn claim(id: &str, [statement, theory, measured, bound]: [String; 4], holds: bool) -> Claim {
-    let verdict = Verdict::from_comparison(holds);
-    Claim { id: format!("tradeoff.{id}"), study: "tradeoff".to_owned(), statement, theory, measured, bound, verdict }
+fn claim(id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Evidence>) -> Claim {
+    claim::claim("tradeoff", id, texts, evidence)
 }
 
 /// The evaluations of every finished run of an explicit method are those of its formula.
 fn evaluations(rows: &[Row]) -> Vec<Claim> {
-    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run && row.scored().is_some()).collect();
+    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
     let one = |method: String| {
         let expected = Candidate::from_id(&method)?.evaluations_a_step()?;
-        let of_method: Vec<&&Row> = runs.iter().filter(|row| row.method == method).collect();
-        let wrong = of_method.iter().filter(|row| row.evaluations != expected * row.steps).count();
+        // A run that failed has not taken all its steps.
+        let finished = |row: &&&Row| row.method == method && row.scored().is_some();
+        let of_method: Vec<&&Row> = runs.iter().filter(finished).collect();
+        let is_right = |row: &&Row| expected.checked_mul(row.steps) == Some(row.evaluations);
+        let wrong = of_method.iter().filter(|row| !is_right(row)).count();
         let texts = [
             format!("{method} evaluates the force {expected} times a step"),
             format!("{expected} a step"),
             format!("{wrong} of {} runs differ", of_method.len()),
             "none differs".to_owned(),
         ];
-        Some(claim(&format!("evaluations.{method}"), texts, wrong == 0))
+        Some(claim(&format!("evaluations.{method}"), texts, of_method.iter().map(|row| Evidence::is(is_right(row)))))
     };
     distinct(runs.iter().map(|row| row.method.clone())).into_iter().filter_map(one).collect()
 }
@@ -56,7 +59,7 @@ fn question(rows: &[Row]) -> Option<Claim> {
         format!("{cheaper} of {known}"),
         "more than half the scenes on which the sweeps tell".to_owned(),
     ];
-    (known >= MANY).then(|| claim("semi-implicit-or-rk4", texts, 2 * cheaper > known))
+    (known >= MANY).then(|| claim("semi-implicit-or-rk4", texts, [Evidence::is(2 * cheaper > known)]))
 }
 
 /// Roundings on the way to the first increment: of h, of g h and of g h^2, each of eps / 2, and the width of the bracket.
@@ -76,7 +79,7 @@ fn vanish(row: &Row) -> Claim {
         format!("within {ROUNDINGS} eps"),
     ];
     let holds = low <= theory * (1.0 + slack) && high >= theory * (1.0 - slack) && high - low <= slack * high;
-    claim(&format!("vanish.{}.{height}", row.precision.id()), texts, holds)
+    claim(&format!("vanish.{}.{height}", row.precision.id()), texts, [Evidence::is(holds)])
 }
 
 /// Scenes for which the models of rounding do not hold: a motion that forgets its errors, errors that jump with every bounce, and
@@ -122,7 +125,7 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
                 format!("{steps} steps"),
                 format!("{fewest:.0} .. {most:.0}: a factor of 2, the grid of steps"),
             ],
-            (fewest..=most).contains(&steps),
+            [Evidence::within(Some(steps), [fewest, most])],
         ),
         claim(
             &id("error"),
@@ -135,7 +138,7 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
                 short(Some(minimum.error)),
                 format!("{} .. {}", short(Some(least)), short(Some(largest))),
             ],
-            (least..=largest).contains(&minimum.error),
+            [Evidence::within(Some(minimum.error), [least, largest])],
         ),
     ]
 }

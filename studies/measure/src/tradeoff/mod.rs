@@ -29,7 +29,8 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{Derived, Selection, Study, check_method, check_scene, check_steps};
+use candidate::Candidate;
 use scenes::run::{Outcome, Precision};
 
 /// What a row belongs to.
@@ -132,6 +133,11 @@ impl Study for Tradeoff {
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         claims::all(rows)
+    }
+    fn check(row: &Row) -> Result<(), String> {
+        check_scene(&row.scene)?;
+        check_method(&row.method, Candidate::from_id(&row.method).is_some())?;
+        check_steps(row.steps, row.h_s)
     }
 }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use faer::fx128;
 use scenes::any::AnyScene;
 use scenes::invariants::Balance;
-use scenes::observation::{Observation, Quantity, Value, distance};
+use scenes::observation::{Observation, Quantity, Value, distance, largest};
 
 /// A quantity whose error is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,8 +69,7 @@ impl Of {
     }
 }
 
-/// The largest distance of two lists of values; NaN where one is not a number.
+/// The largest distance of two lists of values; NaN where one is not a number, or where there are none.
 pub fn largest_distance(a: &[Cow<'_, Value>], b: &[Cow<'_, Value>]) -> f64 {
-    let distances = a.iter().zip(b).map(|(a, b)| distance(a, b));
-    distances.fold(0.0, |most: f64, d| if d > most || d.is_nan() { d } else { most })
+    largest(a.iter().zip(b).map(|(a, b)| distance(a, b))).unwrap_or(f64::NAN)
 }

@@ -9,7 +9,7 @@ use super::path::{Coordinates, Path};
 use super::quantity::{Of, largest_distance};
 use scenes::any::AnyScene;
 use scenes::errors;
-use scenes::observation::{Observation, Quantity};
+use scenes::observation::{Observation, Quantity, largest, worse};
 use scenes::run::{Outcome, Trajectory};
 
 /// Samples of a run of the study.
@@ -88,12 +88,12 @@ impl<'a> Truth<'a> {
                 let t = self.time(i as u64, samples.len() as u64 - 1);
                 Coordinates::of(&self.of.values(self.scene, t, seen)).values.into_iter().fold(0.0, f64::hypot)
             };
-            return samples.iter().enumerate().map(size).fold(0.0, f64::max);
+            return largest(samples.iter().enumerate().map(size)).unwrap_or(f64::NAN);
         }
-        let of = |quantity| samples.iter().map(move |seen| seen.scale(quantity)).fold(0.0, f64::max);
+        let of = |quantity| largest(samples.iter().map(move |seen| seen.scale(quantity))).unwrap_or(f64::NAN);
         match self.of {
             Of::Quantity(quantity) => of(quantity),
-            _ => of(Quantity::Position).max(of(Quantity::Attitude)),
+            _ => worse(of(Quantity::Position), of(Quantity::Attitude)),
         }
     }
 
@@ -191,5 +191,5 @@ fn over(distances: impl Iterator<Item = f64>) -> Option<Errors> {
 fn of_configuration(a: &Observation, b: &Observation) -> f64 {
     let distances = a.distances(b);
     let of_configuration = distances.iter().filter(|(q, _)| matches!(q, Quantity::Position | Quantity::Attitude));
-    of_configuration.map(|(_, d)| *d).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    of_configuration.map(|(_, d)| *d).reduce(worse).unwrap_or(f64::NAN)
 }

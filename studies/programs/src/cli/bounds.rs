@@ -106,7 +106,7 @@ enum Format {
 /// A file that is not one of bounds, or cannot be written; a name that is not known; rows that match no run.
 pub fn run(cli: &Flags) -> Result<Ending, Error> {
     let ending = |text, good: bool| Ok(Ending { text, note: None, code: u8::from(!good) });
-    use_threads(cli.threads);
+    use_threads(cli.threads)?;
     if let Some([old, new]) = cli.baseline.as_deref() {
         let comparison = baseline::compare(&baseline::read(old)?, &baseline::read(new)?);
         return ending(comparison.text(), !comparison.is_worse());

@@ -38,7 +38,7 @@ pub fn run(common: &Common, count: usize, seed: u64) -> Result<Ending, Error> {
     let mut selection = common.selection()?;
     let out = OutputDir::create(common.out(Ensemble::ID))?;
     let Product { files, section, claims } = ensemble(&mut selection, count, seed, common.format)?;
-    let judged = Judged { claims, manifest: Manifest::of(&common.plan) };
+    let judged = Judged { claims, manifest: Manifest::of(&common.plan).sealed(&files)?, is_full: false };
     produce::write(&out, Ensemble::ID, common, files, &judged.manifest)?;
     Ending::of(common, &judged, |claims| {
         let tables: String = section.blocks.iter().flat_map(tables).collect();

@@ -10,6 +10,7 @@ pub mod tradeoff;
 mod voice;
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use clap::{Args, ColorChoice, ValueEnum};
 
@@ -98,12 +99,20 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
     number.ok_or_else(|| format!("not a number of threads; {remedy}"))
 }
 
-/// Runs what follows on so many threads; on all cores where none is given.
-pub fn use_threads(threads: Option<usize>) {
-    if let Some(threads) = threads {
-        // Fails only if a pool exists already, and then its size was chosen by the same flag.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
+/// Starts the threads that everything runs on: as many as given, else one a core.
+///
+/// # Errors
+/// The system refuses to start them.
+pub fn use_threads(threads: Option<usize>) -> Result<(), Error> {
+    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
+    let start = || {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+        pool.build_global().map_err(|error| error.to_string())
+    };
+    STARTED.get_or_init(start).clone().map_err(|message| {
+        let remedy = "give fewer threads, or raise the limits of processes and memory (ulimit -u, ulimit -v)";
+        Error::plan("--threads", format!("the system starts no more threads: {message}; {remedy}"))
+    })
 }
 
 impl Common {
@@ -118,7 +127,7 @@ impl Common {
     /// # Errors
     /// An unknown name, a parameter outside its range, or a number of steps that is zero.
     pub fn selection(&self) -> Result<Selection, Error> {
-        use_threads(self.threads);
+        use_threads(self.threads)?;
         Ok(Selection { progress: Progress::on_terminal("", self.quiet), ..self.plan.selection()? })
     }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
-use reports::{Claim, exit_code};
+use reports::Claim;
 
 use super::voice::{complain, note, of_flags, print};
 use super::{Common, color, list};
@@ -57,7 +57,7 @@ impl Ending {
         } else {
             color::painted(&plain(&judged.claims))
         };
-        Ok(Ending { text, note: None, code: exit_code(&judged.claims) })
+        Ok(Ending { text, note: None, code: judged.code() })
     }
 }
 
@@ -182,7 +182,7 @@ fn perform<F: Args>(words: &Words, run: impl Fn(F) -> Result<Ending, Error>) -> 
     }
 }
 
-const CODES: &str = "Exit codes: 0 all claims hold, 1 a claim is broken (the files are written all the same) or an answer is no, \
+const CODES: &str = "Exit codes: 0 all claims hold, 1 a claim is broken or, with the default plan, not tested (the files are written all the same), or an answer is no, \
     2 wrong input, 130 interrupted.";
 
 fn command<F: Args>(words: &Words) -> Command {

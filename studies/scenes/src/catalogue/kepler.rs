@@ -54,6 +54,11 @@ impl Kepler {
         Kepler { anomaly: 0.0, ..Self::default() }
     }
 
+    /// Numbers that no binary arithmetic has: parameters that are rounded to another one show.
+    pub fn decimal() -> Self {
+        Kepler { mass: 0.7, mu: 2.1, semi_major: 1.3, eccentricity: 0.41, anomaly: 0.9 }
+    }
+
     /// e = 0.9: the time scale at the pericentre is a thirtieth of the mean.
     pub fn eccentric() -> Self {
         Kepler { eccentricity: 0.90625, ..Self::default() }

@@ -82,6 +82,7 @@ list! {
     "quadratic-drag/fall" => Particles(QuadraticDrag::default());
     "quadratic-drag/rise" => Particles(QuadraticDrag::rise());
     "oscillator" => Particles(Oscillator::default()) taught;
+    "oscillator/decimal" => Particles(Oscillator::decimal());
     "damped-oscillator" => Particles(DampedOscillator::default()) taught;
     "damped-oscillator/critical" => Particles(DampedOscillator::critical());
     "damped-oscillator/over-damped" => Particles(DampedOscillator::over_damped());
@@ -94,6 +95,7 @@ list! {
     "kepler" => Particles(Kepler::default()) taught;
     "kepler/circular" => Particles(Kepler::circular());
     "kepler/pericentre" => Particles(Kepler::pericentre());
+    "kepler/decimal" => Particles(Kepler::decimal());
     "kepler/eccentric" => Particles(Kepler::eccentric()) taught;
     "charged-particle" => Particles(ChargedParticle::default());
     "charged-particle/magnetic" => Particles(ChargedParticle::magnetic()) taught;

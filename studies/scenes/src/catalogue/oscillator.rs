@@ -38,6 +38,11 @@ scene_parameters! {
 }
 
 impl Oscillator {
+    /// Numbers that no binary arithmetic has: parameters that are rounded to another one show.
+    pub fn decimal() -> Self {
+        Oscillator { mass: 1.4, stiffness: 6.1, x0: 0.7, v0: -1.3 }
+    }
+
     /// omega = sqrt(k / m), rad/s.
     pub fn omega(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()

@@ -8,6 +8,8 @@
 
 use integrator::real::Single;
 
+use crate::observation::worse;
+
 /// Spread of the arguments below which the first term left out, of degree 8, is below eps / 4: (eps / 4)^(1/8).
 fn spread_bound<T: Single>() -> f64 {
     (T::EPSILON / 4.0).sqrt().sqrt().sqrt()
@@ -97,5 +99,5 @@ fn rj_series<T: Single>(x: T, y: T, z: T, p: T) -> T {
 }
 
 fn largest<T: Single>(values: &[T]) -> f64 {
-    values.iter().fold(0.0, |most, v| v.to_f64().abs().max(most))
+    values.iter().map(|v| v.to_f64().abs()).fold(0.0, worse)
 }

@@ -1,0 +1,178 @@
+//! Every column of every rows file, spoilt in every way, judged without the manifest's hash: what changes the evidence of a claim is
+//! refused, or breaks a claim, or leaves one untested. `--nocapture` prints the table.
+//!
+//! `--from` refuses all of it before anything is judged: exports.rs.
+
+use std::collections::BTreeMap;
+
+use measure::adequacy::Adequacy;
+use measure::convergence::Convergence;
+use measure::drift::DriftStudy;
+use measure::rotation::Rotation;
+use measure::stability::Stability;
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
+use measure::tradeoff::Tradeoff;
+use reports::{Claim, Verdict};
+use scenes::run::Precision;
+
+fn selection() -> Selection {
+    let ids =
+        ["oscillator", "damped-oscillator", "kepler", "constant-force", "torque-free-spin", "principal-axis-torque"];
+    Selection {
+        scenes: ids.map(|id| scenes::by_id(id).expect("a scene")).into(),
+        methods: integrator::methods::MethodId::ALL.to_vec(),
+        precisions: Precision::ALL.to_vec(),
+        steps: Vec::new(),
+        quick: true,
+        progress: Progress::silent(),
+    }
+}
+
+const CORRUPTIONS: [&str; 6] = ["NaN", "empty", "sign", "x1.08", "swapped", "constant"];
+
+/// A column spoilt in one way; `None` where the way does not apply to what stands in it.
+fn spoilt(header: &[String], rows: &[Vec<String>], column: usize, how: &str) -> Option<String> {
+    let is_number = rows.iter().all(|row| row[column].is_empty() || row[column].parse::<f64>().is_ok());
+    if !is_number && how != "empty" && how != "swapped" && how != "constant" {
+        return None;
+    }
+    let mut all = rows.to_vec();
+    let filled: Vec<usize> = (0..all.len()).filter(|&i| !all[i][column].is_empty()).collect();
+    match how {
+        "swapped" => filled.chunks_exact(2).for_each(|pair| {
+            let other = all[pair[0]][column].clone();
+            all[pair[0]][column] = std::mem::replace(&mut all[pair[1]][column], other);
+        }),
+        "constant" => {
+            let first = all.get(*filled.first()?)?[column].clone();
+            filled.iter().for_each(|&i| all[i][column].clone_from(&first));
+        }
+        _ => {
+            for &i in &filled {
+                let text = &all[i][column];
+                all[i][column] = match (how, text.parse::<f64>()) {
+                    ("empty", _) => String::new(),
+                    ("NaN", _) => "NaN".to_owned(),
+                    ("sign", Ok(x)) => format!("{:?}", -x),
+                    // A whole number stays one.
+                    (_, Ok(x)) if !text.contains('.') && !text.contains('e') => format!("{}", (x * 1.08).ceil()),
+                    (_, Ok(x)) => format!("{:?}", x * 1.08),
+                    _ => text.clone(),
+                };
+            }
+        }
+    }
+    if all == rows { None } else { Some(write(header, &all)) }
+}
+
+fn write(header: &[String], rows: &[Vec<String>]) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in std::iter::once(header).chain(rows.iter().map(Vec::as_slice)) {
+        writer.write_record(record).expect("into memory");
+    }
+    String::from_utf8(writer.into_inner().expect("into memory")).expect("text")
+}
+
+/// What rows make of the claims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Outcome {
+    /// They are refused.
+    Refused,
+    /// A claim is broken or not tested.
+    Seen,
+    /// No claim has changed its evidence.
+    Same,
+    /// Claims are gone, and none of the rest has changed.
+    Gone,
+    /// A claim that holds has other evidence.
+    Green,
+}
+
+fn claims<S: Study>(text: &str) -> Result<Vec<Claim>, String> {
+    let rows: Vec<S::Row> = reports::read_csv(text, "rows.csv").map_err(|error| error.to_string())?;
+    rows.iter().try_for_each(S::check)?;
+    Ok(S::claims(&rows))
+}
+
+fn judged<S: Study>(good: &[Claim], text: &str) -> (Outcome, String) {
+    let found = match claims::<S>(text) {
+        Err(message) => return (Outcome::Refused, message),
+        Ok(found) => found,
+    };
+    if let Some(claim) = found.iter().find(|claim| claim.verdict != Verdict::Holds) {
+        return (Outcome::Seen, claim.id.clone());
+    }
+    let by_id: BTreeMap<&str, &Claim> = found.iter().map(|claim| (claim.id.as_str(), claim)).collect();
+    let other = |claim: &&Claim| {
+        by_id.get(claim.id.as_str()).is_some_and(|now| (&now.theory, &now.measured) != (&claim.theory, &claim.measured))
+    };
+    if let Some(claim) = good.iter().find(other) {
+        return (Outcome::Green, format!("{}: {} -> {}", claim.id, claim.measured, by_id[claim.id.as_str()].measured));
+    }
+    let gone = good.iter().filter(|claim| !by_id.contains_key(claim.id.as_str())).count();
+    if gone > 0 { (Outcome::Gone, format!("{gone} of {}", good.len())) } else { (Outcome::Same, String::new()) }
+}
+
+/// What stays green, with the reason: study, column, how (empty for every way), why.
+type Exception = (&'static str, &'static str, &'static str, &'static str);
+
+/// Judges every corruption of one study's rows and gives those that stay green without a reason.
+fn matrix<S: Study>(exceptions: &[Exception]) -> Vec<String> {
+    let rows = S::measure(&selection());
+    let text = reports::write_csv(&rows).expect("rows have a form");
+    let good = S::claims(&rows);
+    let held = good.iter().all(|claim| claim.verdict == Verdict::Holds);
+    assert!(held && good.len() > 5, "{}: {} claims", S::ID, good.len());
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header: Vec<String> = reader.headers().expect("a header").iter().map(str::to_owned).collect();
+    let lines: Vec<Vec<String>> =
+        reader.records().map(|row| row.expect("read back").iter().map(str::to_owned).collect()).collect();
+    let mut survivors = Vec::new();
+    let mut look = |column: &str, how: &str, text: &str| {
+        let (outcome, what) = judged::<S>(&good, text);
+        println!("{:<12} {column:<20} {how:<10} {outcome:?} {what}", S::ID);
+        let is_known = exceptions
+            .iter()
+            .any(|(study, of, way, _)| *study == S::ID && *of == column && (way.is_empty() || *way == how));
+        if outcome >= Outcome::Gone && !is_known {
+            survivors.push(format!("{} {column} {how}: {outcome:?} {what}", S::ID));
+        }
+    };
+    for (i, column) in header.iter().enumerate() {
+        for how in CORRUPTIONS {
+            if let Some(text) = spoilt(&header, &lines, i, how) {
+                look(column, how, &text);
+            }
+        }
+        let kept: Vec<usize> = (0..header.len()).filter(|&k| k != i).collect();
+        let less = |row: &Vec<String>| kept.iter().map(|&k| row[k].clone()).collect::<Vec<String>>();
+        look(column, "missing", &write(&less(&header), &lines.iter().map(less).collect::<Vec<_>>()));
+    }
+    // Cut within the last run, so that the last claim loses part of what it needs.
+    look("(rows)", "truncated", &write(&header, &lines[..lines.len() - 1]));
+    if let Some(outcome) = header.iter().position(|name| name == "outcome") {
+        let mut failed = lines.clone();
+        failed.iter_mut().for_each(|row| "diverged".clone_into(&mut row[outcome]));
+        look("(runs)", "diverged", &write(&header, &failed));
+    }
+    survivors
+}
+
+/// Corruptions that stay green, and why that is right.
+const EXCEPTIONS: [Exception; 0] = [];
+
+// Fails if: a claim holds over rows that are not there, not numbers, of the wrong sign, 8 % off or of another run.
+#[test]
+fn no_corruption_that_changes_the_evidence_stays_green() {
+    let survivors: Vec<String> = [
+        matrix::<Convergence>(&EXCEPTIONS),
+        matrix::<DriftStudy>(&EXCEPTIONS),
+        matrix::<Rotation>(&EXCEPTIONS),
+        matrix::<Adequacy>(&EXCEPTIONS),
+        matrix::<Stability>(&EXCEPTIONS),
+        matrix::<Tradeoff>(&EXCEPTIONS),
+    ]
+    .concat();
+    assert!(survivors.is_empty(), "{}", survivors.join("\n"));
+}

@@ -1,0 +1,398 @@
+//! Planted faults, chosen at run time: coefficients, forces, loads, drivers and accounts, one wrong at a time. Each has to be noticed by
+//! the claims of the report, by the committed bounds, or by the laws that the suite holds every scene to.
+//! `cargo test --release --test planted -- --nocapture` prints who sees what.
+//!
+//! The faults act in f64: claims see them where f64 and double-double are compared. The gate's own mutants (`bounds --mutants`) are
+//! held to every row that names them; those not in this list are in bounds.rs.
+
+mod accounts;
+mod methods;
+mod models;
+
+use std::collections::BTreeMap;
+
+use gate::row::Kind;
+use gate::stepper::Ask;
+use gate::{Bounds, Candidate};
+use integrator::drive::SETTLE_EVERY;
+use integrator::methods::MethodId;
+use integrator::rigid_body::{RigidBody, RigidModel, WorldOmega};
+use integrator::{Method, Model, State, Vector};
+use measure::convergence::{Convergence, Row};
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
+use methods::{EXPLICIT, IMPLICIT, MIDPOINT, RK4, SEMI_IMPLICIT, Steps, VERLET};
+use models::{Drive, Flat, Law, Loads, Wrong};
+use reports::Verdict;
+use scenes::any::AnyScene;
+use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
+use scenes::errors::{self, Truth};
+use scenes::observation::Observation;
+use scenes::run::{Place, Precision, Samples, Trajectory};
+
+/// One fault, in the place of a built-in method.
+#[derive(Clone, Copy)]
+struct Fault {
+    method: MethodId,
+    steps: Steps,
+    law: Law,
+    loads: Loads,
+    drive: Drive,
+}
+
+fn right(method: MethodId, steps: Steps) -> Fault {
+    Fault { method, steps, law: Law::Right, loads: Loads::Right, drive: Drive::Right }
+}
+
+impl Candidate for Fault {
+    fn run(&self, ask: &Ask<'_>) -> Option<Trajectory> {
+        if ask.precision != Precision::F64 {
+            return None;
+        }
+        Some(match ask.scene.any_motion() {
+            AnyMotion::One(motion) => self.flat(motion, ask),
+            AnyMotion::Two(motion) => self.flat(motion, ask),
+            AnyMotion::Three(motion) => self.flat(motion, ask),
+            AnyMotion::Sixteen(motion) => self.flat(motion, ask),
+            AnyMotion::Pivoted(motion) => self.turning(motion, ask),
+            AnyMotion::Flying(motion) => self.turning(motion, ask),
+        })
+    }
+}
+
+impl Fault {
+    fn flat<const N: usize>(&self, motion: FlatMotion<'_, N>, ask: &Ask<'_>) -> Trajectory {
+        let model = Flat { motion, law: self.law };
+        self.driven(&model, motion.exact(0.0), ask, |s| motion.observe(s))
+    }
+
+    fn turning<P: Place<f64>>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Trajectory {
+        let body = Wrong { motion, loads: self.loads };
+        let body: &dyn RigidBody<f64, Position = P> = &body;
+        let model = WorldOmega::<_>::new(body);
+        self.driven(&model, model.state(&motion.exact(0.0)), ask, |s| Observation::of_body(&model, s))
+    }
+
+    fn driven<M: Model<f64>>(
+        &self,
+        model: &M,
+        start: State<M::Config>,
+        ask: &Ask<'_>,
+        observe: impl Fn(&State<M::Config>) -> Observation,
+    ) -> Trajectory {
+        let mut h = ask.end_s / ask.steps as f64;
+        let mut s = start;
+        match self.drive {
+            Drive::StepOnePercent => h *= 1.01,
+            Drive::StartInSingle => s.v = Vector::from_fn(|i| f64::from(start.v.component(i) as f32)),
+            Drive::StartVelocityNegative => s.v = -start.v,
+            _ => {}
+        }
+        let mut seen = vec![(0, observe(&s))];
+        let mut failed_step = None;
+        let mut summed = 0.0_f32;
+        let last = ask.steps;
+        for i in 0..last {
+            let t = match self.drive {
+                Drive::FirstTimeIsOne => (i + 1) as f64 * h,
+                Drive::TimeSummedInSingle => f64::from(summed),
+                _ => i as f64 * h,
+            };
+            summed += h as f32;
+            let before = s;
+            let skipped = self.drive == Drive::OneStepShort && i + 1 == last;
+            for _ in 0..if skipped { 0 } else { 1 + u32::from(self.drive == Drive::OneStepMore && i + 1 == last) } {
+                s = model.contact(&s, self.steps.step(model, t, h, s));
+            }
+            if !s.is_finite() {
+                failed_step = Some(i + 1);
+                break;
+            }
+            if (i + 1) % SETTLE_EVERY == 0 {
+                s = s.settled();
+            }
+            if (i + 1) % ask.stride == 0 || i + 1 == last {
+                seen.push((i + 1, observe(if self.drive == Drive::SeenOneStepLate { &before } else { &s })));
+            }
+        }
+        Samples { seen, failed_step }.trajectory(false, 0)
+    }
+}
+
+static FLAT: [&str; 5] = ["forced-oscillator", "charged-particle", "bouncing-ball", "kepler", "linear-drag"];
+static BODIES: [&str; 3] = ["manufactured", "heavy-top", "box-tumbling"];
+
+/// What claims are judged by: the rows of a built-in method, and its runs in double-double.
+struct Baseline {
+    scene: Box<dyn AnyScene>,
+    truth: Truth,
+    rows: Vec<Row>,
+    references: BTreeMap<u64, Trajectory>,
+}
+
+impl Baseline {
+    fn of(scene: &str, method: MethodId) -> Self {
+        let by_id = || scenes::by_id(scene).expect("a scene");
+        let selection = Selection {
+            scenes: vec![by_id()],
+            methods: vec![method],
+            precisions: Precision::ALL.to_vec(),
+            steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
+            quick: true,
+            progress: Progress::silent(),
+        };
+        let rows = Convergence::measure(&selection);
+        let scene = by_id();
+        let reference = |row: &Row| {
+            (
+                row.steps,
+                errors::run(scene.as_ref(), method, Precision::DoubleDouble, row.steps).expect("a general method"),
+            )
+        };
+        let mut references = BTreeMap::new();
+        for row in &rows {
+            references.entry(row.steps).or_insert_with(|| reference(row).1);
+        }
+        Baseline { truth: Truth::of(scene.as_ref()), rows, references, scene }
+    }
+
+    /// The claims that are broken with the candidate's runs in the place of those in f64.
+    fn broken(&self, candidate: &dyn Candidate) -> Vec<String> {
+        let mut rows = self.rows.clone();
+        let scene = self.scene.as_ref();
+        let end_s = scene.scene().info().horizon_s;
+        for (&steps, reference) in &self.references {
+            let ask = Ask { scene, precision: Precision::F64, end_s, steps, stride: errors::stride(steps) };
+            let Some(run) = candidate.run(&ask) else { continue };
+            for error in self.truth.compare(scene, steps, &run, reference) {
+                let is_it = |row: &&mut Row| {
+                    row.precision == Precision::F64 && row.steps == steps && row.quantity == error.quantity
+                };
+                for row in rows.iter_mut().filter(is_it) {
+                    row.outcome = run.outcome;
+                    (row.error_end, row.error_max) = (error.end, error.max);
+                    (row.rounding_end, row.rounding_max) = (error.rounding_end, error.rounding_max);
+                }
+            }
+        }
+        let broken = Convergence::claims(&rows).into_iter().filter(|claim| claim.verdict == Verdict::Broken);
+        broken.map(|claim| claim.id).collect()
+    }
+}
+
+/// The committed bounds of errors and invariants in f64 on the scenes of this test.
+fn bounds() -> Bounds {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/bounds.csv");
+    let mut bounds = Bounds::read(path).expect("the committed bounds can be read");
+    let kinds = [Kind::Order, Kind::ErrorAtStep, Kind::ErrorConstant, Kind::Drift];
+    bounds.rows.retain(|row| {
+        let is_here = FLAT.contains(&row.scene.as_str()) || BODIES.contains(&row.scene.as_str());
+        is_here && kinds.contains(&row.kind) && row.precision == Precision::F64
+    });
+    bounds
+}
+
+/// The numbers of claims and bounds that a fault breaks.
+struct Judge {
+    bounds: Bounds,
+    baselines: BTreeMap<(usize, &'static str), Baseline>,
+}
+
+impl Judge {
+    fn new() -> Self {
+        Judge { bounds: bounds(), baselines: BTreeMap::new() }
+    }
+
+    fn seen_by(&mut self, fault: &Fault, scenes: &[&'static str]) -> [usize; 2] {
+        let index = MethodId::ALL.iter().position(|m| *m == fault.method).expect("a method");
+        let mut claims = 0;
+        for &scene in scenes {
+            let baseline = self.baselines.entry((index, scene)).or_insert_with(|| Baseline::of(scene, fault.method));
+            claims += baseline.broken(fault).len();
+        }
+        let name = fault.method.id();
+        let name = if BODIES.contains(&scenes[0]) { format!("{name}/world-omega") } else { name.to_owned() };
+        let held = self.bounds.hold(&name, fault).expect("the method has bounds");
+        let here = held.broken().into_iter().filter(|one| scenes.contains(&one.row.scene.as_str())).count();
+        [claims, here]
+    }
+}
+
+const METHODS: [(MethodId, Steps); 6] = [
+    (MethodId::ExplicitEuler, EXPLICIT),
+    (MethodId::SemiImplicitEuler, SEMI_IMPLICIT),
+    (MethodId::VelocityVerlet, VERLET),
+    (MethodId::Rk4, RK4),
+    (MethodId::ImplicitEuler, IMPLICIT),
+    (MethodId::ImplicitMidpoint, MIDPOINT),
+];
+
+fn scenes_of(method: MethodId) -> &'static [&'static str] {
+    // By fixed-point iteration, and in double-double: two scenes will do.
+    if method.is_implicit() { &["forced-oscillator", "linear-drag"] } else { &FLAT[..] }
+}
+
+// Fails if: a method of this file has a fault already, and each planted one is seen because of it.
+#[test]
+fn without_a_fault_nothing_is_broken() {
+    let mut judge = Judge::new();
+    for (method, steps) in METHODS {
+        assert_eq!(judge.seen_by(&right(method, steps), scenes_of(method)), [0, 0], "{}", method.id());
+        if method == MethodId::Rk4 {
+            assert_eq!(judge.seen_by(&right(method, steps), &BODIES[..]), [0, 0], "{} on bodies", method.id());
+        }
+    }
+}
+
+/// The faults of methods that are not a coefficient.
+fn other_steps() -> Vec<(&'static str, MethodId, Steps, &'static [&'static str])> {
+    let rk4 = |a, c, b, brackets| Steps::Rk4 { a, c, b, brackets };
+    let Steps::Rk4 { a, c, b, brackets } = RK4 else { return Vec::new() };
+    let kdk = |kicks, half, mix, times, ahead, stale| Steps::Kdk { kicks, drift: 1.0, half, mix, times, ahead, stale };
+    let [explicit, semi, verlet, _, implicit, midpoint] = METHODS.map(|(method, _)| method);
+    let rk = MethodId::Rk4;
+    vec![
+        ("rk4: every stage at the time of the first", rk, rk4(a, [0.0; 3], b, brackets), &FLAT[..]),
+        ("rk4: stages at the end", rk, rk4(a, [1.0; 3], b, brackets), &FLAT[..]),
+        ("rk4: weights of the 3/8 rule", rk, rk4(a, c, [0.125, 0.375, 0.375, 0.125], brackets), &FLAT[..]),
+        ("rk4: weights in another order", rk, rk4(a, c, [b[1], b[0], b[3], b[2]], brackets), &FLAT[..]),
+        ("rk4: the last stage at the middle", rk, rk4([0.5; 3], c, b, brackets), &FLAT[..]),
+        ("rk4: weights rounded to f32", rk, rk4(a, c, b.map(|x| f64::from(x as f32)), brackets), &FLAT[..]),
+        ("rk4: no first bracket", rk, rk4(a, c, b, [0.0, brackets[1]]), &BODIES[..]),
+        ("rk4: no second bracket", rk, rk4(a, c, b, [brackets[0], 0.0]), &BODIES[..]),
+        ("rk4: first bracket negative", rk, rk4(a, c, b, [-brackets[0], brackets[1]]), &BODIES[..]),
+        ("rk4: second bracket negative", rk, rk4(a, c, b, [brackets[0], -brackets[1]]), &BODIES[..]),
+        ("rk4: first bracket 1 % off", rk, rk4(a, c, b, [1.01 * brackets[0], brackets[1]]), &BODIES[..]),
+        ("rk4: second bracket 1 % off", rk, rk4(a, c, b, [brackets[0], 1.01 * brackets[1]]), &BODIES[..]),
+        ("explicit: moves with the new velocity", explicit, SEMI_IMPLICIT, &FLAT[..]),
+        (
+            "explicit: force at the end of the step",
+            explicit,
+            kdk([1.0, 0.0], 0.0, 0.0, [1.0, 1.0], 1.0, false),
+            &FLAT[..],
+        ),
+        (
+            "explicit: moves with the mean velocity",
+            explicit,
+            kdk([1.0, 0.0], 0.0, 0.5, [0.0, 1.0], 1.0, false),
+            &FLAT[..],
+        ),
+        ("semi-implicit: moves with the old velocity", semi, EXPLICIT, &FLAT[..]),
+        (
+            "semi-implicit: force at the end of the step",
+            semi,
+            kdk([1.0, 0.0], 0.0, 1.0, [1.0, 1.0], 1.0, false),
+            &FLAT[..],
+        ),
+        (
+            "semi-implicit: moves with the mean velocity",
+            semi,
+            kdk([1.0, 0.0], 0.0, 0.5, [0.0, 1.0], 1.0, false),
+            &FLAT[..],
+        ),
+        (
+            "verlet: kicks twice with the first force",
+            verlet,
+            kdk([0.5, 0.5], 0.5, 1.0, [0.0, 1.0], 1.0, true),
+            &FLAT[..],
+        ),
+        (
+            "verlet: second force at the first time",
+            verlet,
+            kdk([0.5, 0.5], 0.5, 1.0, [0.0, 0.0], 1.0, false),
+            &FLAT[..],
+        ),
+        (
+            "verlet: first force at the second time",
+            verlet,
+            kdk([0.5, 0.5], 0.5, 1.0, [1.0, 1.0], 1.0, false),
+            &FLAT[..],
+        ),
+        (
+            "verlet: second force at the half velocity",
+            verlet,
+            kdk([0.5, 0.5], 0.5, 1.0, [0.0, 1.0], 0.5, false),
+            &FLAT[..],
+        ),
+        (
+            "verlet: second force at the old velocity",
+            verlet,
+            kdk([0.5, 0.5], 0.5, 1.0, [0.0, 1.0], 0.0, false),
+            &FLAT[..],
+        ),
+        ("verlet: moves with the old velocity", verlet, kdk([0.5, 0.5], 0.5, 0.0, [0.0, 1.0], 1.0, false), &FLAT[..]),
+        ("verlet: a whole first kick", verlet, kdk([1.0, 0.5], 0.5, 1.0, [0.0, 1.0], 1.0, false), &FLAT[..]),
+        ("verlet: no second kick", verlet, kdk([0.5, 0.0], 0.5, 1.0, [0.0, 1.0], 1.0, false), &FLAT[..]),
+        ("implicit Euler: one iteration", implicit, Steps::Theta { theta: 1.0, time: 1.0, iterations: 1 }, &FLAT[..1]),
+        ("implicit Euler: the midpoint rule", implicit, MIDPOINT, &FLAT[..1]),
+        (
+            "implicit midpoint: one iteration",
+            midpoint,
+            Steps::Theta { theta: 0.5, time: 0.5, iterations: 1 },
+            &FLAT[..1],
+        ),
+        (
+            "implicit midpoint: two iterations",
+            midpoint,
+            Steps::Theta { theta: 0.5, time: 0.5, iterations: 2 },
+            &FLAT[..1],
+        ),
+        ("implicit midpoint: implicit Euler", midpoint, IMPLICIT, &FLAT[..1]),
+        (
+            "implicit midpoint: force at the start",
+            midpoint,
+            Steps::Theta { theta: 0.5, time: 0.0, iterations: 64 },
+            &FLAT[..1],
+        ),
+    ]
+}
+
+/// Every fault of a run: its name, and the scenes that it is looked for on.
+fn faults() -> Vec<(String, Fault, &'static [&'static str])> {
+    let mut all = Vec::new();
+    for (method, steps) in METHODS {
+        let named = |(name, wrong): (String, Steps)| {
+            (format!("{}: {name}", method.id()), right(method, wrong), scenes_of(method))
+        };
+        all.extend(methods::faults(steps).into_iter().map(named));
+    }
+    let other = other_steps().into_iter();
+    all.extend(other.map(|(name, method, steps, scenes)| (name.to_owned(), right(method, steps), scenes)));
+    let rk4 = right(MethodId::Rk4, RK4);
+    all.extend(Law::ALL.map(|(law, name)| (name.to_owned(), Fault { law, ..rk4 }, &FLAT[..])));
+    all.extend(Loads::ALL.map(|(loads, name)| (name.to_owned(), Fault { loads, ..rk4 }, &BODIES[..])));
+    for (drive, name) in Drive::ALL {
+        let scenes = if drive == Drive::StartInSingle { &BODIES[..] } else { &FLAT[..] };
+        all.push((name.to_owned(), Fault { drive, ..rk4 }, scenes));
+    }
+    all
+}
+
+/// Faults that change no number: nothing could see them.
+const WITHOUT_EFFECT: [&str; 0] = [];
+
+// Fails if: a planted fault is seen by nobody.
+#[test]
+fn every_planted_fault_is_seen() {
+    let mut judge = Judge::new();
+    let all = faults();
+    let mut survivors = Vec::new();
+    println!("{:<60} claims bounds", "fault");
+    for (name, fault, scenes) in &all {
+        let [claims, bounds] = judge.seen_by(fault, scenes);
+        println!("{name:<60} {claims:>6} {bounds:>6}");
+        if claims + bounds == 0 && !WITHOUT_EFFECT.contains(&name.as_str()) {
+            survivors.push(name.clone());
+        }
+    }
+    let accounts = accounts::faults();
+    for (name, seen) in &accounts {
+        println!("{name:<60} laws: {seen}");
+        if *seen == 0 {
+            survivors.push((*name).to_owned());
+        }
+    }
+    println!("{} faults, {} survive", all.len() + accounts.len(), survivors.len());
+    assert!(survivors.is_empty(), "{survivors:#?}");
+    assert!(all.len() + accounts.len() >= 89, "{}", all.len() + accounts.len());
+}
