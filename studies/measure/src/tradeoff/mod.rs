@@ -4,6 +4,7 @@
 //! and no claim rests on them.
 
 pub mod advice;
+mod budget;
 pub mod candidate;
 mod claims;
 pub mod clock;
