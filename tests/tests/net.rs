@@ -8,6 +8,7 @@ use std::fmt::Write;
 use gate::mutants::Mutant;
 use gate::stepper::{Ask, Stepper};
 use integrator::methods::MethodId;
+use measure::claim::Evidence;
 use measure::convergence::{Convergence, Row, judge, orders};
 use measure::drift::DriftStudy;
 use measure::rotation::{Rotation, orders as turning};
@@ -233,7 +234,7 @@ fn no_built_in_mutant_stays_green_whatever_the_parameters() {
                         continue;
                     }
                     let Some(wrong) = rows_of_mutant(scene, &right, mutant, stepper) else { continue };
-                    let green = orders(&wrong).iter().all(|o| judge(o) == Verdict::Holds);
+                    let green = orders(&wrong).iter().all(|o| judge(o) == Evidence::Inside);
                     if green && differ(&right, &wrong) {
                         alive.push(format!("[{i}] {flags}\n    {} under {}", method.id(), mutant.id()));
                     }
