@@ -141,6 +141,11 @@ type Making = Box<dyn FnOnce(&Plan) -> Result<Product, Error> + Send>;
 pub fn from_rows<S: Study>(rows: &[S::Row], plan: &Plan, format: Format) -> Result<Product, Error> {
     let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?.into_bytes())];
     let claims = S::claims(rows);
+    if let Some(id) = measure::claim::repeated(&claims) {
+        let message =
+            format!("two claims are named {id}: rows of a run stand twice or under another's name; run again");
+        return Err(Error::plan(format!("{}.csv", S::ID), message));
+    }
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
     let mut figures = S::figures(rows);
