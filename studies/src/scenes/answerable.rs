@@ -49,6 +49,8 @@ pub(crate) fn range(scene: &str, parameters: &dyn Parameters, seen: &Observation
         scene: scene.to_owned(),
         parameter,
         value,
-        expected: format!("the motion leaves the range of numbers within the {horizon_s} s of a run: take a smaller one"),
+        expected: format!(
+            "the motion leaves the range of numbers within the {horizon_s} s of a run: take a smaller one"
+        ),
     })
 }

@@ -171,7 +171,8 @@ impl BouncingBall {
         let (g, e, count) = (self.gravity, self.restitution, self.bounces());
         let late = self.lateness(fx128::lit(self.info().horizon_s));
         let arc = if late.0 < 0.0 { None } else { self.arc(late) };
-        let end = arc.map_or((0.0, 0.0), |arc| (arc.since.to_f64() * self.flight().value().to_f64(), arc.left.to_f64()));
+        let end =
+            arc.map_or((0.0, 0.0), |arc| (arc.since.to_f64() * self.flight().value().to_f64(), arc.left.to_f64()));
         let impact = self.impact_speed().to_f64();
         let v = impact * end.1 - g * end.0;
         let at_end = |delay: f64, extra: f64| [-v * delay + g * extra * end.0, g * (delay + extra)];

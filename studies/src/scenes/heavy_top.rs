@@ -15,8 +15,8 @@ use crate::scenes::answerable;
 use crate::scenes::constant_force::lit;
 use crate::scenes::parameters::scene_parameters;
 use crate::scenes::rigid;
-use crate::special::scaled::Scaled;
 use crate::special::lagrange_top::LagrangeTop;
+use crate::special::scaled::Scaled;
 
 scene_parameters! {
     /// A symmetric top on a fixed point, its centre of mass on the third axis of the body.

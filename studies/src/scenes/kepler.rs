@@ -15,8 +15,9 @@ use crate::observation::{Observation, Quantity};
 use crate::scene::{Balance, Entry, ExpectedGrowth, Info, Motion, Scene, rounded};
 use crate::scenes::answerable;
 use crate::scenes::parameters::scene_parameters;
-use crate::special::scaled::Scaled;
+use crate::special::elementary::nearest_turn;
 use crate::special::kepler::{eccentric_anomaly, slope};
+use crate::special::scaled::Scaled;
 
 scene_parameters! {
     /// A planet; the default starts away from an apsis.
@@ -71,7 +72,7 @@ impl<T: Single> Motion<T> for Kepler {
     fn exact(&self, t: T) -> State<Vector2<T>> {
         let (e, one) = (fx128::lit(self.eccentricity), fx128::ONE);
         let phase = self.mean_motion().times(Scaled::of_wide(t.widen())).value();
-        let at = eccentric_anomaly(fx128::lit(self.anomaly) + phase, e);
+        let at = eccentric_anomaly(nearest_turn(fx128::lit(self.anomaly)) + phase, e);
         let half = (at.angle * fx128::lit(0.5)).sin_cos().0;
         let flattening = ((one - e) * (one + e)).sqrt();
         let distance = slope(at.angle, e);

@@ -62,6 +62,9 @@ impl Linear {
     /// What theory says of a method's error at the time `t_s`, with the constant |e_q| or |e_v|. Where the phase makes
     /// the leading term vanish the order is one more.
     pub(crate) fn theory(&self, method: MethodId, quantity: Quantity, t_s: f64) -> Theory {
+        if !self.is_resolved(t_s) {
+            return Theory::usual(method);
+        }
         let n = self.start.len() / 2;
         let (error, size) = self.error_constants(method, t_s);
         let first = if quantity == Quantity::Position { 0 } else { n };
@@ -78,6 +81,12 @@ impl Linear {
             constant,
             "the method's local error, propagated by the linear equations of motion",
         )
+    }
+
+    /// Whether the matrix exponential has digits at the time T: it loses as many as |Y| T has, and its powers must be numbers.
+    fn is_resolved(&self, t_s: f64) -> bool {
+        let size = self.extended().amax();
+        size * t_s <= MOST_PHASE && size.powi(5) * self.start.amax().max(1.0) < f64::MAX.sqrt()
     }
 
     /// e(T), and the size of d at the start.
@@ -134,6 +143,9 @@ impl Linear {
         }
     }
 }
+
+/// Radians, or decay, after which eight digits of an error constant are left.
+const MOST_PHASE: f64 = 1e8;
 
 /// Below this part of T |d| an error constant is rounding of the matrix exponential.
 const VANISHING: f64 = 1e-12;

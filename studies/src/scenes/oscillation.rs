@@ -196,7 +196,8 @@ impl Oscillation {
         }
         let (phases, time) = (self.phases(t), Scaled::of_wide(t));
         let free = phases.free();
-        let (q, q_rate) = if self.force == Scaled::of(0.0) { (fx128::ZERO, fx128::ZERO) } else { phases.response(&free) };
+        let (q, q_rate) =
+            if self.force == Scaled::of(0.0) { (fx128::ZERO, fx128::ZERO) } else { phases.response(&free) };
         let [c, s, s_rate, q, q_rate] = [free.c, free.s, free.s_rate, q, q_rate].map(Scaled::of_wide);
         let pushed = self.force.times(time);
         let x = [x0.times(c), v0.times(time).times(s), pushed.times(time).times(q)];

@@ -109,7 +109,8 @@ impl Scene for PrincipalAxisTorque {
         rigid::check("principal-axis-torque", self.inertia, self.attitude)?;
         let end_s = self.info().horizon_s;
         let phase = self.half_angle(Scaled::of(end_s)).to_f64();
-        let most = if self.omega.abs() * end_s >= phase.abs() { ("omega", &self.omega) } else { ("torque", &self.torque) };
+        let most =
+            if self.omega.abs() * end_s >= phase.abs() { ("omega", &self.omega) } else { ("torque", &self.torque) };
         answerable::phase("principal-axis-torque", most, phase, end_s)
     }
 

@@ -40,7 +40,11 @@ enum Motion {
     /// Gravity is below the rounding.
     Free(SymmetricTop),
     Nutating(Nutation),
-    NearVertical { pull: Pull, relative_spin: fx128, period: fx128 },
+    NearVertical {
+        pull: Pull,
+        relative_spin: fx128,
+        period: fx128,
+    },
 }
 
 /// Below this part of the square of the fastest rate, m g l / I1 changes nothing while phases are resolved.
@@ -107,7 +111,9 @@ impl LagrangeTop {
         let t = times_two_to(t.widen(), self.unit);
         let (attitude, omega) = match &self.motion {
             Motion::Nutating(nutation) => nutation.at(t, self.omega0.z),
-            Motion::NearVertical { pull, relative_spin, period } => self.near_vertical(pull, *relative_spin, *period, t),
+            Motion::NearVertical { pull, relative_spin, period } => {
+                self.near_vertical(pull, *relative_spin, *period, t)
+            }
             _ => (self.attitude0 * Rotation::exp(self.omega0 * t), self.omega0),
         };
         let omega = omega.map(|w| T::narrow(times_two_to(w, self.unit)));
@@ -132,6 +138,8 @@ impl LagrangeTop {
             let [sum, difference] = halves(at.attitude);
             let (sum, difference) = (turn(sum, p), turn(difference, d));
             at.attitude = Rotation { w: sum.x, v: Vector3::new(difference.x, difference.y, sum.y) };
+            // psi = p - d turns the frame in which omega is seen.
+            at.omega = turn(at.omega, d - p);
             at
         };
         // The body turns about its axis in the frame of the series.

@@ -48,6 +48,9 @@ impl SymmetricTop {
         let (sine, cosine) = angle.sin_cos();
         let [x, y, z] = self.omega0.into();
         let omega = Vector3::new(x * cosine - y * sine, x * sine + y * cosine, z);
-        (Rotation { w: T::narrow(attitude.w), v: attitude.v.map(T::narrow) }, omega.map(|w| T::narrow(times_two_to(w, self.rate_unit))))
+        (
+            Rotation { w: T::narrow(attitude.w), v: attitude.v.map(T::narrow) },
+            omega.map(|w| T::narrow(times_two_to(w, self.rate_unit))),
+        )
     }
 }

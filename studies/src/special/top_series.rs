@@ -68,11 +68,8 @@ impl Pull {
                 of(w, &y) + of(k, &x) - i[n] * z,
                 w[n] * z + of(i, &y) - of(j, &x),
             ];
-            let turned = [
-                up[1][n] * z - of(&up[2], &y),
-                of(&up[2], &x) - up[0][n] * z,
-                of(&up[0], &y) - of(&up[1], &x),
-            ];
+            let turned =
+                [up[1][n] * z - of(&up[2], &y), of(&up[2], &x) - up[0][n] * z, of(&up[0], &y) - of(&up[1], &x)];
             x[n + 1] = self.gravity * up[1][n] * next;
             y[n + 1] = -(self.gravity * up[0][n] * next);
             (0..3).for_each(|i| up[i][n + 1] = turned[i] * next);
