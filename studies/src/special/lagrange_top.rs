@@ -130,7 +130,7 @@ impl LagrangeTop {
     ) -> (Rotation<fx128>, Vector3<fx128>) {
         let start = Spherical { attitude: self.attitude0, omega: self.omega0.xy() };
         let whole = if period.is_finite() { (t / period - fx128::from_f64(0.5)).round() } else { fx128::ZERO };
-        let now = if whole.0 < 2.0 {
+        let now = if whole.0.abs() < 2.0 {
             pull.after(start, t)
         } else {
             let mut at = pull.after(start, t - whole * period);
