@@ -34,6 +34,7 @@ pub struct LagrangeTop {
 }
 
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 enum Motion {
     /// A top that sleeps upright or hangs.
     Steady,
