@@ -16,6 +16,7 @@ use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Pace, Scene};
+use crate::special::elementary::nearest_turn;
 use crate::special::kepler::{eccentric_anomaly, slope};
 use crate::special::scaled::Scaled;
 use crate::theory::ExpectedGrowth;
@@ -98,7 +99,7 @@ impl<T: Single> Motion<T> for Kepler {
     fn exact(&self, t: T) -> State<Vector2<T>> {
         let (e, one) = (fx128::lit(self.eccentricity), fx128::ONE);
         let phase = self.mean_motion().times(Scaled::of_wide(t.widen())).value();
-        let at = eccentric_anomaly(fx128::lit(self.anomaly) + phase, e);
+        let at = eccentric_anomaly(nearest_turn(fx128::lit(self.anomaly)) + phase, e);
         let half = (at.angle * fx128::lit(0.5)).sin_cos().0;
         let flattening = ((one - e) * (one + e)).sqrt();
         let distance = slope(at.angle, e);

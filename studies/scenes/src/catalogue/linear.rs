@@ -62,12 +62,21 @@ impl Linear {
     /// What theory says of a method's error at the time `t_s`, with the constant |e_q| or |e_v|. It vanishes in some phases,
     /// and along some motions.
     pub(crate) fn theory(&self, method: MethodId, quantity: Quantity, t_s: f64) -> Theory {
+        if !self.is_resolved(t_s) {
+            return Theory::usual(method);
+        }
         let n = self.start.len() / 2;
         let (error, size) = self.error_constants(method, t_s);
         let first = if quantity == Quantity::Position { 0 } else { n };
         let constant = error.rows(first, n).norm();
         let reason = "the method's local error, propagated by the linear equations of motion";
         Theory::with_constant(method, constant, reason).give_or_take(ROUNDING * size * t_s)
+    }
+
+    /// Whether the matrix exponential has digits at the time T: it loses as many as |Y| T has, and its powers must be numbers.
+    fn is_resolved(&self, t_s: f64) -> bool {
+        let size = self.extended().amax();
+        size * t_s <= MOST_PHASE && size.powi(5) * self.start.amax().max(1.0) < f64::MAX.sqrt()
     }
 
     /// e(T), and what the terms of d amount to at the start without their signs.
@@ -124,6 +133,9 @@ impl Linear {
         }
     }
 }
+
+/// Radians, or decay, after which eight digits of an error constant are left.
+const MOST_PHASE: f64 = 1e8;
 
 /// Rounding of the matrix exponential, as a part of T |d|.
 const ROUNDING: f64 = 1e-13;

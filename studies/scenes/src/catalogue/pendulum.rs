@@ -18,7 +18,7 @@ use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
 use crate::scene::{Info, Pace, Scene, time_scale};
-use crate::special::elementary::{asinh, atan, sech, sinc, sinh, versine_over_square};
+use crate::special::elementary::{asinh, atan, nearest_turn, sech, sinc, sinh, versine_over_square};
 use crate::special::elliptic;
 use crate::special::jacobi::Modulus;
 use crate::special::scaled::Scaled;
@@ -117,17 +117,6 @@ impl Pendulum {
 const FAST: f64 = 1e17;
 /// Below this size of sin(theta / 2) and theta' / (2 w0) the swing is harmonic: k^2 / 16 of MOST_RADIANS is below 2^-106.
 const SMALL: f64 = 1e-25;
-
-/// An angle in [-pi, pi] that differs by whole turns.
-fn nearest_turn(angle: fx128) -> fx128 {
-    if angle.0.abs() < 1e6 {
-        let two_pi = fx128::PI + fx128::PI;
-        return angle - (angle / two_pi).round() * two_pi;
-    }
-    // Their sine and cosine are reduced with all digits of pi.
-    let (sine, cosine) = angle.sin_cos();
-    sine.atan2(cosine)
-}
 
 /// theta and theta' / w0 of a rotation (mc < 0) or of the separatrix (mc = 0) in the positive sense, from theta / 2 at the
 /// start, at the phase w0 t.
