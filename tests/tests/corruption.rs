@@ -24,6 +24,7 @@ fn selection() -> Selection {
         methods: integrator::methods::MethodId::ALL.to_vec(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
+        end_s: None,
         quick: true,
         progress: Progress::silent(),
     }

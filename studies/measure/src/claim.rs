@@ -50,14 +50,8 @@ pub fn verdict(evidence: impl IntoIterator<Item = Evidence>) -> Verdict {
 
 /// The claim of a study with its statement, theory, measurement and bound in words, judged by its evidence. Its full name is
 /// `study.id`.
-pub fn claim(
-    study: &str,
-    id: &str,
-    [statement, theory, measured, bound]: [String; 4],
-    evidence: impl IntoIterator<Item = Evidence>,
-) -> Claim {
-    let (id, study) = (format!("{study}.{id}"), study.to_owned());
-    Claim { id, study, statement, theory, measured, bound, verdict: verdict(evidence) }
+pub fn claim(study: &str, id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Evidence>) -> Claim {
+    Claim::new(study, format!("{study}.{id}"), texts, verdict(evidence))
 }
 
 /// The name that two of the claims have, where two have one: rows of one run then stand twice, or under another's name.
