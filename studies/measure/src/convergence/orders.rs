@@ -323,7 +323,7 @@ fn is_judged(o: &OrderRow) -> bool {
 
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
     let (theory, measured, change) = (o.theory_constant?, o.constant?, o.constant_change?);
-    let bound = change + o.theory_doubt + ROUNDING * theory;
+    let bound = 3.0 * change + o.theory_doubt + ROUNDING * theory;
     Some(Claim {
         id: format!("convergence.{}.{}.{}.constant", o.scene, o.method, o.quantity.id()),
         study: "convergence".to_owned(),
@@ -331,6 +331,6 @@ fn constant_claim(o: &OrderRow) -> Option<Claim> {
         theory: format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
         measured: format!("{measured:.9e}"),
         bound: format!("+- {bound:.1e}, the change of the last extrapolation"),
-        verdict: Truth::from_comparison((measured - theory).abs() <= bound),
+        verdict: Truth::from_comparison((measured.abs() - theory).abs() <= bound),
     })
 }
