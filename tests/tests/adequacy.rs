@@ -18,6 +18,7 @@ fn rows() -> &'static [Row] {
             steps: Vec::new(),
             end_s: None,
             quick: false,
+            draws: Default::default(),
             progress: Progress::silent(),
         })
     })

@@ -19,6 +19,7 @@ fn selection(id: &str) -> Selection {
         steps: Vec::new(),
         end_s: None,
         quick: false,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

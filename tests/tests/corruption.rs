@@ -26,6 +26,7 @@ fn selection() -> Selection {
         steps: Vec::new(),
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

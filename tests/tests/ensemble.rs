@@ -16,7 +16,6 @@ use measure::ensemble::{Row, measure};
 use measure::study::Selection;
 use measure::sweep::Progress;
 use nalgebra::{Matrix3, Vector1, Vector2, Vector3};
-use programs::cli::ensemble::ensemble;
 use reports::write_csv;
 use scenes::observation::{Observation, Quantity, Value};
 use scenes::run::{Precision, Run};
@@ -178,6 +177,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
         steps: steps.to_vec(),
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }
@@ -286,11 +286,8 @@ fn median_and_worst_fall_with_the_order_of_the_method() {
 #[test]
 fn what_cannot_run_in_lanes_is_refused_with_what_can() {
     let refused = |id: &str, methods: &[MethodId], precision, count| {
-        let mut plan = Selection { precisions: vec![precision], ..selection(id, methods, &[8]) };
-        ensemble(&mut plan, count, 1, programs::cli::Format::Svg)
-            .err()
-            .map(|error| error.to_string())
-            .unwrap_or_default()
+        let plan = Selection { precisions: vec![precision], ..selection(id, methods, &[8]) };
+        measure::ensemble::check(&plan, count, 1).err().map(|error| error.to_string()).unwrap_or_default()
     };
     let contacts = refused("bouncing-ball", &IN_LANES, Precision::F64, 4);
     assert!(contacts.contains("bouncing-ball") && contacts.contains("kepler"), "{contacts}");

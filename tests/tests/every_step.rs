@@ -151,6 +151,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
         steps: Vec::new(),
         end_s: None,
         quick: false,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

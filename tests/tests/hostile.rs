@@ -164,7 +164,7 @@ const FLAGS: [&str; 34] = [
     "--budget-us",
     "--for",
     "--rate",
-    "--ensemble",
+    "--members",
     "--seed",
     "--step",
     "--bounds",

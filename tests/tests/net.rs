@@ -140,6 +140,7 @@ fn selection(scene: Box<dyn AnyScene>, precision: Precision) -> Selection {
         steps: (0..=8).map(|k| coarsest << k).collect(),
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

@@ -24,6 +24,7 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
         steps: Vec::new(),
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

@@ -205,6 +205,7 @@ fn every_claim_of_a_quick_study_holds() {
         steps: Vec::new(),
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     };
     let rows = Stability::measure(&selection);

@@ -19,6 +19,7 @@ fn selection() -> Selection {
         steps: vec![64, 100, 32],
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

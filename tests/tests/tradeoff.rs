@@ -29,6 +29,7 @@ fn selection(ids: &[&str]) -> Selection {
         steps: Vec::new(),
         end_s: None,
         quick: false,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

@@ -190,6 +190,7 @@ fn selection() -> Selection {
         steps: vec![2, 64],
         end_s: None,
         quick: true,
+        draws: Default::default(),
         progress: Progress::silent(),
     }
 }

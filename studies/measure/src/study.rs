@@ -22,10 +22,27 @@ pub struct Selection {
     pub steps: Vec<u64>,
     /// The length of a run, s; `None` for the horizon of each scene.
     pub end_s: Option<f64>,
+    /// The starts of an ensemble.
+    pub draws: Draws,
     /// Fewer and shorter runs.
     pub quick: bool,
     /// The bar to be shown.
     pub progress: Progress,
+}
+
+/// How many starts of a scene are drawn, and from which seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Draws {
+    /// Members of an ensemble.
+    pub members: usize,
+    /// Seed of the generator.
+    pub seed: u64,
+}
+
+impl Default for Draws {
+    fn default() -> Self {
+        Draws { members: 256, seed: 1 }
+    }
 }
 
 /// No sweep that was not asked for takes more steps in a run.
@@ -73,6 +90,24 @@ pub trait Study {
     /// The keys of a plan that it heeds besides `scene`, `method`, `set` and `quick`. A plan of this study alone that gives another
     /// is refused.
     const HEEDS: &'static [&'static str];
+
+    /// Refuses a selection that leaves nothing to be run.
+    ///
+    /// # Errors
+    /// What leaves nothing to be run, named with what would be right.
+    fn check_selection(selection: &Selection) -> Result<(), Error> {
+        let _ = selection;
+        Ok(())
+    }
+
+    /// Tables of times, which follow from no row: a run makes them beside its rows, and nothing else does.
+    ///
+    /// # Errors
+    /// A table that has no form as CSV.
+    fn timings(selection: &Selection) -> Result<Vec<Derived>, Error> {
+        let _ = selection;
+        Ok(Vec::new())
+    }
 
     /// Runs what it needs.
     fn measure(selection: &Selection) -> Vec<Self::Row>;

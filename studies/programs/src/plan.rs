@@ -10,7 +10,7 @@ use measure::error::Error;
 use scenes::any::AnyScene;
 use scenes::run::{Precision, method_from_id};
 
-use measure::study::{Selection, distinct};
+use measure::study::{Draws, Selection, distinct};
 use measure::sweep::Progress;
 
 /// All that decides the numbers of a run, and nothing else: the same plan gives the same bytes, but for times. An empty list
@@ -44,9 +44,28 @@ pub struct Plan {
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
     pub for_s: Option<Seconds>,
 
+    /// Members of an ensemble [default: 256]
+    #[arg(long, value_name = "N", value_parser = members, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub members: Option<usize>,
+
+    /// Seed from which the members are drawn [default: 1]
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+
     /// One preset of each scene, fewer halvings and shorter runs
     #[arg(long)]
     pub quick: bool,
+}
+
+fn members(text: &str) -> Result<usize, String> {
+    let number = text.trim().parse().ok().filter(|n| *n > 0);
+    number.ok_or_else(|| "not a whole number greater than 0; give a number of starts, such as 1000".to_owned())
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("not a whole number from 0 to {}; give a seed, such as 1", u64::MAX))
 }
 
 const STEPS_REMEDY: &str = "a run has at least 1 step; give numbers such as 64,128,256";
@@ -105,7 +124,7 @@ impl Plan {
     }
 
     fn keys() -> &'static str {
-        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds) and quick (true or false)"
+        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds), members, seed (whole numbers) and quick (true or false)"
     }
 
     /// The plan as TOML.
@@ -134,6 +153,8 @@ impl Plan {
             set: kept.chain(flags.set.iter().cloned()).collect(),
             steps: either(flags.steps, self.steps),
             for_s: flags.for_s.or(self.for_s),
+            members: flags.members.or(self.members),
+            seed: flags.seed.or(self.seed),
             quick: self.quick || flags.quick,
         }
     }
@@ -147,6 +168,8 @@ impl Plan {
             ("precision", !self.precision.is_empty()),
             ("steps", !self.steps.is_empty()),
             ("for", self.for_s.is_some()),
+            ("members", self.members.is_some()),
+            ("seed", self.seed.is_some()),
         ];
         let unheard = given.into_iter().find(|(key, is_given)| *is_given && !heeds.contains(key));
         unheard.map_or(Ok(()), |(key, _)| {
@@ -173,6 +196,12 @@ impl Plan {
         add("steps", &if steps.is_empty() { Vec::new() } else { vec![steps.join(",")] });
         if let Some(Seconds(s)) = self.for_s {
             flags += &format!(" --for {s}");
+        }
+        if let Some(members) = self.members {
+            flags += &format!(" --members {members}");
+        }
+        if let Some(seed) = self.seed {
+            flags += &format!(" --seed {seed}");
         }
         if self.quick {
             flags += " --quick";
@@ -211,6 +240,10 @@ impl Plan {
             },
             end_s,
             quick: self.quick,
+            draws: Draws {
+                members: self.members.unwrap_or(Draws::default().members),
+                seed: self.seed.unwrap_or(Draws::default().seed),
+            },
             progress: Progress::silent(),
         })
     }

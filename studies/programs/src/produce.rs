@@ -88,6 +88,7 @@ impl Source {
     fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
         match &mut self.rows {
             Rows::Measured(selection) => {
+                S::check_selection(selection)?;
                 selection.progress.name(S::ID);
                 Ok(S::measure(selection))
             }
@@ -100,7 +101,15 @@ impl Source {
     /// # Errors
     /// Rows that cannot be read, or that have no form as text; figures that cannot be drawn.
     pub fn product<S: Study>(&mut self) -> Result<Product, Error> {
-        from_rows::<S>(&self.rows::<S>()?, &self.manifest.plan, self.format)
+        let mut product = from_rows::<S>(&self.rows::<S>()?, &self.manifest.plan, self.format)?;
+        if let Rows::Measured(selection) = &self.rows {
+            for Derived { name, caption, csv, table } in S::timings(selection)? {
+                product.files.push((format!("{name}.csv"), csv.into_bytes()));
+                let block = Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) };
+                product.section.blocks.push(block);
+            }
+        }
+        Ok(product)
     }
 
     /// Every study of the report, in its order: measured one after the other, each on all cores, and then drawn and judged
@@ -192,14 +201,14 @@ fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
 ///
 /// # Errors
 /// Bad input, or an output that cannot be written.
-pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
+pub fn study<S: Study>(common: &Common) -> Result<(Judged, Section), Error> {
     common.plan.heeded(S::ID, S::HEEDS)?;
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
-    let Product { files, claims, .. } = source.product::<S>()?;
+    let Product { files, claims, section } = source.product::<S>()?;
     let manifest = source.manifest.sealed(&files)?;
     write(&out, S::ID, common, files, &manifest)?;
-    Ok(Judged::of(claims, manifest))
+    Ok((Judged::of(claims, manifest), section))
 }
 
 /// Writes the files with plan and manifest in place of those that this program wrote there before, or of the files the charts

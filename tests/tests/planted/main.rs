@@ -140,6 +140,7 @@ impl Baseline {
             steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
             end_s: None,
             quick: true,
+            draws: Default::default(),
             progress: Progress::silent(),
         };
         let rows = Convergence::measure(&selection);

@@ -65,7 +65,7 @@ macro_rules! list {
                  scenes with a rule: {}",
                 with_a_rule().join(", ")
             );
-            Err(Error::plan(format!("--ensemble with scene '{id}'"), message))
+            Err(Error::plan(format!("--scene {id}"), message))
         }
 
         /// The scenes and presets whose starts can be drawn.

@@ -30,8 +30,6 @@ const HALVINGS: u32 = 8;
 const QUICK_HALVINGS: u32 = 5;
 /// Members of a job: enough that both cores are busy, few enough that no one waits for the last.
 const CHUNK: usize = 64;
-/// Members of an ensemble whose size nobody chose.
-pub const MEMBERS: usize = 256;
 /// The largest ensemble: each member takes about a kilobyte a scene.
 const MOST_MEMBERS: usize = 1 << 20;
 
@@ -84,14 +82,25 @@ pub struct Ensemble;
 impl Study for Ensemble {
     type Row = Row;
     const ID: &'static str = "ensemble";
-    const HEEDS: &'static [&'static str] = &["precision", "steps"];
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "members", "seed"];
+    const ABOUT: &'static str =
+        "Starts each scene from many states drawn by its rule, and ranks the errors: median, 95 %, worst";
+    const EXAMPLES: &'static str = "ensemble --scene kepler --members 1000
+        ensemble --scene torque-free-spin --method rk4 --members 10000 --seed 7";
+
+    fn check_selection(selection: &Selection) -> Result<(), Error> {
+        check(selection, selection.draws.members, selection.draws.seed)
+    }
+    fn timings(selection: &Selection) -> Result<Vec<Derived>, Error> {
+        Ok(vec![cost::table(selection, selection.draws.members, selection.draws.seed)?])
+    }
     const TITLE: &'static str = "How wrong is it, from anywhere? Ensembles";
-    const INTRO: &'static str = "One start may be lucky. Here each scene is started from many states, drawn by its rule from a \
+    const INTRO: &'static str = "One initial condition may be unrepresentative. Here each scene is started from many states, drawn by its rule from a \
         seed, and its errors at the end are ranked: the median, the 95th percentile and the worst, and where the worst one started. \
         The members run in SIMD lanes and on all cores, with the bits they have alone. A member that fails ranks above all others.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
-        measure(selection, MEMBERS, 1)
+        measure(selection, selection.draws.members, selection.draws.seed)
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         show::tables(rows)
@@ -109,12 +118,11 @@ impl Study for Ensemble {
 /// # Errors
 /// What leaves nothing to be run, named with what would be right.
 pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error> {
-    const PLACE: &str = "--ensemble";
     if !(1..=MOST_MEMBERS).contains(&count) {
-        return Err(Error::plan(PLACE, format!("{count} members; give 1 to {MOST_MEMBERS}")));
+        return Err(Error::plan("--members", format!("{count} members; give 1 to {MOST_MEMBERS}")));
     }
     if !selection.precisions.contains(&Precision::F64) {
-        return Err(Error::plan(PLACE, "lanes compute in f64; leave --precision out"));
+        return Err(Error::plan("--precision", "lanes compute in f64; leave --precision out"));
     }
     if !selection.methods.iter().any(|&method| runs_in_lanes(method)) {
         let lanes = MethodId::ALL.iter().filter(|&&method| runs_in_lanes(method)).map(|method| method.id());
@@ -122,7 +130,7 @@ pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error
             "an implicit step compares numbers, each member for itself, and does not run in lanes; give one of {}",
             lanes.collect::<Vec<_>>().join(", ")
         );
-        return Err(Error::plan(PLACE, message));
+        return Err(Error::plan("--method", message));
     }
     // A scene without a rule is left out among others; where nothing is left, it is said why.
     let known = with_a_rule();

@@ -118,7 +118,7 @@ fn figure(scene: &str, sweeps: &[Vec<&Row>]) -> Option<Figure> {
     let of_scene: Vec<_> = sweeps.iter().filter(|sweep| sweep[0].scene == scene).collect();
     // Position or attitude: the quantity that a reader looks for first.
     let first = of_scene.first()?[0];
-    let (quantity, members, seed) = (first.quantity, first.members, first.seed);
+    let (quantity, members) = (first.quantity, first.members);
     let mut layers = Vec::new();
     for sweep in of_scene.iter().filter(|sweep| sweep[0].quantity == quantity) {
         let Some(&method) = MethodId::ALL.iter().find(|method| method.id() == sweep[0].method) else { continue };
@@ -147,7 +147,6 @@ fn figure(scene: &str, sweeps: &[Vec<&Row>]) -> Option<Figure> {
         y: Axis::log(format!("{} error at the end ({})", quantity.id(), quantity.unit())),
         layers,
         scene: Some(scene.to_owned()),
-        command: format!("cargo run --release --bin tradeoff -- --scene {scene} --ensemble {members} --seed {seed}"),
         data: "ensemble.csv".to_owned(),
         ..Figure::default()
     })

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ColorChoice, ValueEnum};
 
-use super::{Ending, Words, threads, use_threads};
+use super::{Ending, ProgramInfo, threads, use_threads};
 use gate::known::Known;
 use gate::{Bounds, Judged, Row, audit, baseline, check, format, mutants, read, row, update};
 use measure::error::Error;
@@ -12,7 +12,7 @@ use measure::error::Error;
 use measure::sweep::Progress;
 
 /// What the binary says of itself.
-pub const WORDS: Words = Words {
+pub const WORDS: ProgramInfo = ProgramInfo {
     name: "bounds",
     about: "Checks every committed error bound, and the bounds themselves",
     examples: "bounds                                             every committed bound

@@ -2,7 +2,6 @@
 
 pub mod bounds;
 mod color;
-pub mod ensemble;
 mod list;
 mod program;
 pub mod stability;
@@ -14,7 +13,7 @@ use std::sync::OnceLock;
 
 use clap::{Args, ColorChoice, ValueEnum};
 
-pub use program::{Ending, NoFlags, Words, asking, main, report, start};
+pub use program::{Ending, NoFlags, ProgramInfo, asking, main, report, start, with_tables};
 pub use voice::print;
 
 use crate::plan::Plan;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
-use reports::Claim;
+use reports::{Block, Claim};
 
 use super::voice::{complain, note, of_flags, print};
 use super::{Common, color, list};
@@ -18,7 +18,7 @@ use measure::study::Study;
 
 /// What a binary says of itself.
 #[derive(Clone, Copy, Debug)]
-pub struct Words {
+pub struct ProgramInfo {
     /// Its name.
     pub name: &'static str,
     /// What it does, in a line or two.
@@ -27,9 +27,9 @@ pub struct Words {
     pub examples: &'static str,
 }
 
-impl Words {
+impl ProgramInfo {
     fn of<S: Study>() -> Self {
-        Words { name: S::ID, about: S::ABOUT, examples: S::EXAMPLES }
+        ProgramInfo { name: S::ID, about: S::ABOUT, examples: S::EXAMPLES }
     }
 }
 
@@ -103,17 +103,17 @@ enum Aside {
 
 /// A binary that runs one study.
 pub fn main<S: Study>() -> ExitCode {
-    of_studies(Words::of::<S>(), |common, _: &NoFlags| run::<S>(common))
+    of_studies(ProgramInfo::of::<S>(), |common, _: &NoFlags| run::<S>(common))
 }
 
 /// A binary that runs one study, or answers a question put by its own flags: where `ask` gives `None`, it is the study.
 pub fn asking<S: Study, F: Args>(ask: impl Fn(&Common, &F) -> Option<Result<Ending, Error>>) -> ExitCode {
-    of_studies(Words::of::<S>(), |common, own: &F| ask(common, own).unwrap_or_else(|| run::<S>(common)))
+    of_studies(ProgramInfo::of::<S>(), |common, own: &F| ask(common, own).unwrap_or_else(|| run::<S>(common)))
 }
 
 /// The binary of the whole report.
 pub fn report() -> ExitCode {
-    let words = Words {
+    let words = ProgramInfo {
         name: REPORT,
         about: "Runs every study, prints the verdicts and writes the report: CSV, charts and one page, index.html",
         examples: "report                                     everything, into target/report/
@@ -132,10 +132,30 @@ pub fn report() -> ExitCode {
 }
 
 fn run<S: Study>(common: &Common) -> Result<Ending, Error> {
-    Ending::of(common, &study::<S>(common)?, summary::verdicts)
+    Ending::of(common, &study::<S>(common)?.0, summary::verdicts)
 }
 
-fn of_studies<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending, Error>) -> ExitCode {
+/// A binary that runs one study and prints its tables before its claims.
+pub fn with_tables<S: Study>() -> ExitCode {
+    of_studies(ProgramInfo::of::<S>(), |common, _: &NoFlags| {
+        let (judged, section) = study::<S>(common)?;
+        Ending::of(common, &judged, |claims| {
+            let tables: String = section.blocks.iter().flat_map(tables).collect();
+            format!("{tables}{}", summary::verdicts(claims))
+        })
+    })
+}
+
+/// The tables of a block, also of those within a group, as text.
+fn tables(block: &Block) -> Vec<String> {
+    match block {
+        Block::Table { caption, table, .. } => vec![format!("{caption}\n\n{}\n", table.to_text())],
+        Block::Group { blocks, .. } => blocks.iter().flat_map(tables).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn of_studies<F: Args>(words: ProgramInfo, run: impl Fn(&Common, &F) -> Result<Ending, Error>) -> ExitCode {
     start(words, |Flags { common, own }: Flags<F>| {
         let common = common.with_plan_file()?;
         let ending = run(&common, &own)?;
@@ -145,7 +165,7 @@ fn of_studies<F: Args>(words: Words, run: impl Fn(&Common, &F) -> Result<Ending,
 
 /// Reads the flags, does what they ask for and ends: 0 all is well, 1 a claim is broken, 2 the input or the output was wrong,
 /// 130 interrupted.
-pub fn start<F: Args>(words: Words, run: impl Fn(F) -> Result<Ending, Error>) -> ExitCode {
+pub fn start<F: Args>(words: ProgramInfo, run: impl Fn(F) -> Result<Ending, Error>) -> ExitCode {
     let arguments: Vec<String> = std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect();
     color::choose(&arguments);
     // Ctrl-C, SIGTERM and SIGHUP let files that are being put in their places arrive. Without a handler they would still end the
@@ -165,7 +185,7 @@ pub fn start<F: Args>(words: Words, run: impl Fn(F) -> Result<Ending, Error>) ->
     )
 }
 
-fn perform<F: Args>(words: &Words, run: impl Fn(F) -> Result<Ending, Error>) -> Result<Ending, Error> {
+fn perform<F: Args>(words: &ProgramInfo, run: impl Fn(F) -> Result<Ending, Error>) -> Result<Ending, Error> {
     let said = |text| Ok(Ending { text, note: None, code: 0 });
     let parsed = command::<F>(words).try_get_matches().and_then(|matches| Cli::<F>::from_arg_matches(&matches));
     match parsed {
@@ -185,7 +205,7 @@ fn perform<F: Args>(words: &Words, run: impl Fn(F) -> Result<Ending, Error>) -> 
 const CODES: &str = "Exit codes: 0 all claims hold, 1 a claim is broken or, with the default plan, not tested (the files are written all the same), or an answer is no, \
     2 wrong input, 130 interrupted.";
 
-fn command<F: Args>(words: &Words) -> Command {
+fn command<F: Args>(words: &ProgramInfo) -> Command {
     let examples = words.examples.lines().map(|line| format!("\n  {}", line.trim())).collect::<String>();
     Cli::<F>::command()
         .name(words.name)
@@ -196,7 +216,7 @@ fn command<F: Args>(words: &Words) -> Command {
 }
 
 /// The command with the names that its flags take, for a shell to complete.
-fn named<F: Args>(words: &Words) -> Command {
+fn named<F: Args>(words: &ProgramInfo) -> Command {
     use clap::builder::PossibleValuesParser as Names;
     let methods = integrator::methods::MethodId::ALL.iter().map(|m| m.id());
     let precisions = scenes::run::Precision::ALL.iter().map(|p| p.id());
