@@ -86,7 +86,7 @@ fn draw(random: &mut Random, id: &str, names: &[&str]) -> Box<dyn AnyScene> {
 
 /// Draws per scene: a few in the suite, as many as wanted by the environment.
 fn draws() -> usize {
-    std::env::var("VERIFICATION_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(4)
+    std::env::var("VERIFICATION_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(2)
 }
 
 // Fails if: an error is the largest of 64 samples; the polynomials of the exact motion are off by a per cent of the level;
@@ -116,7 +116,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
                 scene.scene().parameters().iter().map(|p| format!("{}={}", p.name, p.value)).collect();
             let case = format!("{id} {set:?} {} {precision:?} error {error} over {end_s} s", candidate.id());
             match search(&need, candidate, precision) {
-                Search::Found(tried) if tried.steps <= 1 << 17 => {
+                Search::Found(tried) if tried.steps <= 1 << 15 => {
                     found += 1;
                     let all = measured(tried.steps);
                     assert!(all <= error, "{case}: {tried:?}, over all steps {all}");
@@ -140,7 +140,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
         }
     }
     println!("{found} found, {refused} refused");
-    assert!(found >= 3 * refused, "{found} found, {refused} refused");
+    assert!(found > 0 && found >= 3 * refused, "{found} found, {refused} refused");
 }
 
 fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -> Selection {
