@@ -18,6 +18,7 @@ fn selection(id: &str) -> Selection {
         methods: MethodId::ALL.to_vec(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
+        end_s: None,
         quick: false,
         progress: Progress::silent(),
     }

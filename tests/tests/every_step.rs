@@ -149,6 +149,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
         methods: vec![method],
         precisions: vec![precision],
         steps: Vec::new(),
+        end_s: None,
         quick: false,
         progress: Progress::silent(),
     }

@@ -203,6 +203,7 @@ fn every_claim_of_a_quick_study_holds() {
         methods: MethodId::ALL.to_vec(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
+        end_s: None,
         quick: true,
         progress: Progress::silent(),
     };

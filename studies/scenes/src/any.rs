@@ -13,6 +13,7 @@ use crate::run::{Place, Precision, Run, Shown, Trajectory, run_flat};
 use crate::scene::Scene;
 use crate::timed;
 use crate::timed::{Lap, Laps};
+use crate::variation::{Leading, leading};
 
 /// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
 pub trait AnyScene: Send + Sync {
@@ -53,6 +54,9 @@ pub trait AnyScene: Send + Sync {
         let _ = (run, displacement, looks);
         None
     }
+
+    /// The leading errors of the methods whose local errors theory knows, up to `end_s`: see [`leading`].
+    fn leading(&self, end_s: f64) -> Vec<Leading>;
 
     /// The model and its exact motion in f64, of which only the space is known: for methods and models from outside.
     fn any_motion(&self) -> AnyMotion<'_>;
@@ -108,6 +112,9 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
             run_displaced::<T, <S as Model<T>>::Config>(&self.scene, run, displacement, looks)
         })
     }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        leading::<<S as Model<fx128>>::Config>(&self.scene, end_s, self.scene.info().time_scale_s)
+    }
     fn any_motion(&self) -> AnyMotion<'_> {
         <S as Model<f64>>::Config::erase(&self.scene)
     }
@@ -152,6 +159,9 @@ where
             Precision::F64 => timed::body(&self.scene, run, laps),
             Precision::DoubleDouble => None,
         }
+    }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        leading(&WorldOmega::<&B>::new(&self.scene), end_s, self.scene.info().time_scale_s)
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <B as RigidBody<f64>>::Position::erase(&self.scene)

@@ -47,8 +47,11 @@ impl fmt::Display for Law {
 pub struct Theory {
     /// The order of convergence at the horizon.
     pub order: ExpectedOrder,
-    /// lim error(T) / h^order, in the quantity's unit / s^order, where known.
+    /// lim error(T) / h^order, in the quantity's unit / s^order, where known. Zero where the leading term vanishes: the order
+    /// is then one higher, or more.
     pub constant: Option<f64>,
+    /// How far the constant may be off by the rounding of its formula.
+    pub doubt: f64,
     /// Where it comes from, or why it is not the method's own order.
     pub reason: &'static str,
 }
@@ -71,18 +74,25 @@ impl Theory {
         Theory {
             order: ExpectedOrder::Of(f64::from(method.order())),
             constant: None,
+            doubt: 0.0,
             reason: "the method's order on a smooth problem",
         }
     }
 
     /// No error but rounding.
     pub fn exact(reason: &'static str) -> Self {
-        Theory { order: ExpectedOrder::Exact, constant: None, reason }
+        Theory { order: ExpectedOrder::Exact, constant: None, doubt: 0.0, reason }
     }
 
-    /// The usual order with a known error constant; a constant of zero would mean a higher order.
+    /// The usual order with a known error constant; zero means a higher order.
     pub fn with_constant(method: MethodId, constant: f64, reason: &'static str) -> Self {
         Theory { constant: Some(constant.abs()), reason, ..Self::usual(method) }
+    }
+
+    /// The same with a constant whose formula is rounded by up to `doubt`.
+    #[must_use]
+    pub fn give_or_take(self, doubt: f64) -> Self {
+        Theory { doubt, ..self }
     }
 }
 
@@ -91,6 +101,8 @@ impl Theory {
 pub struct ExpectedGrowth {
     /// The law.
     pub law: Law,
+    /// The length of a run from which on the law is to be seen, s.
+    pub seen_after_s: f64,
     /// For a bounded law the bounds of value / start, for an exponential one its rate in 1/s twice.
     pub bounds: Option<[f64; 2]>,
     /// Where it comes from.

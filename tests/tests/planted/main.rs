@@ -138,22 +138,25 @@ impl Baseline {
             methods: vec![method],
             precisions: Precision::ALL.to_vec(),
             steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
+            end_s: None,
             quick: true,
             progress: Progress::silent(),
         };
         let rows = Convergence::measure(&selection);
         let scene = by_id();
+        let end_s = scene.scene().info().horizon_s;
         let reference = |row: &Row| {
             (
                 row.steps,
-                errors::run(scene.as_ref(), method, Precision::DoubleDouble, row.steps).expect("a general method"),
+                errors::run(scene.as_ref(), method, Precision::DoubleDouble, end_s, row.steps)
+                    .expect("a general method"),
             )
         };
         let mut references = BTreeMap::new();
         for row in &rows {
             references.entry(row.steps).or_insert_with(|| reference(row).1);
         }
-        Baseline { truth: Truth::of(scene.as_ref()), rows, references, scene }
+        Baseline { truth: Truth::of(scene.as_ref(), end_s), rows, references, scene }
     }
 
     /// The claims that are broken with the candidate's runs in the place of those in f64.
@@ -182,8 +185,7 @@ impl Baseline {
 
 /// The committed bounds of errors and invariants in f64 on the scenes of this test.
 fn bounds() -> Bounds {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/bounds.csv");
-    let mut bounds = Bounds::read(path).expect("the committed bounds can be read");
+    let mut bounds = Bounds::committed().expect("the committed bounds can be read");
     let kinds = [Kind::Order, Kind::ErrorAtStep, Kind::ErrorConstant, Kind::Drift];
     bounds.rows.retain(|row| {
         let is_here = FLAT.contains(&row.scene.as_str()) || BODIES.contains(&row.scene.as_str());

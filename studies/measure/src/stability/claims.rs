@@ -97,7 +97,11 @@ fn limit(row: &Row) -> Claim {
     // Growth beyond the limit that is too slow for every run decides nothing.
     let is_tested = row.low.is_some() || row.high.is_some();
     let id = format!("limit.{}.{}.{}", row.scene, row.method, row.precision.id());
+    let numbers = [row.low, row.high].into_iter().flatten();
     claim(&id, texts, [if is_tested { Evidence::is(bracket_agrees(row)) } else { Evidence::Undecided }])
+        .on(&row.scene)
+        .by(&row.method)
+        .with_numbers(numbers)
 }
 
 /// A number in words, where there is one.
@@ -115,6 +119,8 @@ fn rate(row: &Row) -> Claim {
     ];
     let ratio = row.measured.zip(row.theory).map(|(measured, theory)| measured / theory);
     claim(&format!("rate.{}.{}.{z}", row.scene, row.method), texts, [Evidence::near(ratio, Some(1.0), RATE)])
+        .on(&row.scene)
+        .by(&row.method)
 }
 
 fn unconditional(row: &Row) -> Claim {
@@ -128,7 +134,7 @@ fn unconditional(row: &Row) -> Claim {
         format!("difference at most {tolerance:.1e}"),
     ];
     let evidence = [Evidence::near(row.measured, row.theory, tolerance)];
-    claim(&format!("unconditional.{}.{}.{z}", row.method, row.unit), texts, evidence)
+    claim(&format!("unconditional.{}.{}.{z}", row.method, row.unit), texts, evidence).by(&row.method)
 }
 
 fn drag(row: &Row) -> Claim {
@@ -142,6 +148,7 @@ fn drag(row: &Row) -> Claim {
         format!("the bracket contains it and is narrower than {:.0} %", 100.0 * BRACKET),
     ];
     claim(&format!("quadratic-drag.{}", row.quantity.replace(' ', "-")), texts, [Evidence::is(holds)])
+        .on("quadratic-drag")
 }
 
 fn blow_up(row: &Row) -> Claim {

@@ -134,6 +134,7 @@ pub struct Stability;
 impl Study for Stability {
     type Row = Row;
     const ID: &'static str = "stability";
+    const HEEDS: &'static [&'static str] = &["precision"];
     const ABOUT: &'static str = "Measures the largest stable step of methods on scenes and compares it with theory. Given --step or --rate, or both \
         --scene and --method, it prints an answer for these and writes no files";
     const EXAMPLES: &'static str =

@@ -22,15 +22,12 @@ pub struct Flags {
     /// Most microseconds of computing, on one core, for each simulated second
     #[arg(long, value_name = "US", value_parser = microseconds, allow_hyphen_values = true)]
     budget_us: Option<f64>,
-    /// Length of the run, s [default: the scene's horizon]
-    #[arg(long = "for", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    duration_s: Option<f64>,
     /// Frames per second: steps are whole parts of a frame
     #[arg(long = "rate", value_name = "HZ", value_parser = frames_per_second, allow_hyphen_values = true)]
     rate_hz: Option<f64>,
     /// Instead of one start, N starts drawn by each scene's rule: median, 95 % and worst error, into target/ensemble
     #[arg(long, value_name = "N", value_parser = starts, allow_hyphen_values = true,
-        conflicts_with_all = ["error", "of", "budget_us", "duration_s", "rate_hz"])]
+        conflicts_with_all = ["error", "of", "budget_us", "for_s", "rate_hz"])]
     ensemble: Option<usize>,
     /// Seed of the starts that --ensemble draws
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed, allow_hyphen_values = true, requires = "ensemble")]
@@ -43,10 +40,6 @@ fn error_size(text: &str) -> Result<f64, String> {
 
 fn microseconds(text: &str) -> Result<f64, String> {
     positive(text, "microseconds per simulated second, such as 5")
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    positive(text, "seconds, such as 60")
 }
 
 fn starts(text: &str) -> Result<usize, String> {
@@ -68,12 +61,13 @@ fn quantity(text: &str) -> Result<Of, String> {
 
 /// The ensemble or the advice, where the flags ask for it.
 pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
-    let Flags { error, budget_us, duration_s, rate_hz, .. } = *flags;
+    let Flags { error, budget_us, rate_hz, .. } = *flags;
+    let duration_s = common.plan.for_s.map(f64::from);
     let question = Question { error, of: flags.of.unwrap_or_default(), budget_us, duration_s, rate_hz };
     if let Some(count) = flags.ensemble {
         return Some(ensemble::run(common, count, flags.seed));
     }
-    (question != Question::default()).then(|| {
+    (Question { duration_s: None, ..question } != Question::default()).then(|| {
         question.check(!common.plan.scene.is_empty())?;
         common.answers()?;
         let (selection, is_chosen) = (common.selection()?, !common.plan.precision.is_empty());
