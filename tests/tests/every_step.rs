@@ -206,6 +206,21 @@ fn the_error_at_a_pericentre_counts() {
     }
 }
 
+// Implicit Euler's energy error after two steps is smaller than after eight: the doublings go on to where it falls for good.
+// Fails if: an error that grows with the first doublings is taken for rounding.
+#[test]
+fn a_lucky_coarse_run_is_no_rounding_floor() {
+    let top = scene("heavy-top", &[]);
+    let end_s = top.scene().info().horizon_s;
+    let of = Of::Balance(Balance::Energy);
+    let truth = Truth::new(top.as_ref(), end_s, 64).at_every_step(of, 0.05);
+    let need = Need { scene: top.as_ref(), truth: &truth, error: 0.05, end_s, unit: 2 };
+    for candidate in candidates(top.as_ref(), &[MethodId::ImplicitEuler]) {
+        let found = search(&need, candidate, Precision::F64);
+        assert!(matches!(found, Search::Found(_)), "{}: {found:?}", candidate.id());
+    }
+}
+
 // Fails if: a budget is exceeded by the noise of a timing.
 #[test]
 fn a_budget_is_a_bound() {
