@@ -51,10 +51,8 @@ impl<A: OnFlatScenes> Candidate for Flat<A> {
     fn run(&self, ask: &Ask<'_>) -> Option<Trajectory> {
         let clock = clock(ask)?;
         match ask.scene.any_motion() {
-            AnyMotion::One(motion) => Some(on_flat(&self.0, motion, clock)),
-            AnyMotion::Two(motion) => Some(on_flat(&self.0, motion, clock)),
-            AnyMotion::Three(motion) => Some(on_flat(&self.0, motion, clock)),
-            AnyMotion::Sixteen(motion) => Some(on_flat(&self.0, motion, clock)),
+            AnyMotion::Few(scene) => Some(on_flat(&self.0, scene.motion(), clock)),
+            AnyMotion::Many(scene) => Some(on_flat(&self.0, scene.motion(), clock)),
             AnyMotion::Pivoted(_) | AnyMotion::Flying(_) => None,
         }
     }

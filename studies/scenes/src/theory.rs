@@ -75,6 +75,18 @@ impl Theory {
         }
     }
 
+    /// What holds of a method that no theory was worked out for: the smallest of its orders, or a higher one.
+    pub fn least(method: MethodId) -> Self {
+        let facts = method.facts();
+        let others = [facts.order_with_velocity, facts.order_on_rotations];
+        let least = others.into_iter().flatten().fold(facts.order, u32::min);
+        Theory {
+            order: ExpectedOrder::Of(f64::from(least)),
+            constant: None,
+            reason: "the least order that the method states; nothing else is known",
+        }
+    }
+
     /// No error but rounding.
     pub fn exact(reason: &'static str) -> Self {
         Theory { order: ExpectedOrder::Exact, constant: None, reason }

@@ -147,7 +147,7 @@ impl Job<'_> {
 
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
         let row = |errors: Errors| {
-            let theory = self.scene.scene().theory(self.method, errors.quantity);
+            let theory = self.scene.scene().expected_error(self.method, errors.quantity);
             Row {
                 scene: self.scene.id().to_owned(),
                 method: self.method.id().to_owned(),

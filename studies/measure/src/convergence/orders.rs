@@ -10,7 +10,7 @@ use crate::order;
 use crate::order::{Expected, Limits, Sample, Verdict};
 use crate::study::{Derived, short};
 use scenes::observation::Quantity;
-use scenes::run::{Outcome, Precision};
+use scenes::run::{Outcome, Precision, method_from_id};
 
 /// Where in a run an error is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -211,15 +211,16 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     let double: Vec<&OrderRow> = orders.iter().filter(|o| o.precision == Precision::DoubleDouble).collect();
     let mut claims = Vec::new();
     for group in double.chunk_by(|a, b| a.scene == b.scene && a.method == b.method) {
-        claims.push(order_claim(group));
+        claims.extend(order_claim(group));
         claims.extend(group.iter().filter_map(|o| constant_claim(o)));
         claims.extend(group.iter().filter_map(|o| envelope::envelope_claim(o)));
     }
     claims
 }
 
-fn order_claim(group: &[&OrderRow]) -> Claim {
+fn order_claim(group: &[&OrderRow]) -> Option<Claim> {
     let first = group[0];
+    let is_least = !method_from_id(&first.method).is_ok_and(|method| method.facts().worked_out);
     let judged: Vec<&OrderRow> = group.iter().copied().filter(|o| is_judged(o)).collect();
     let word = |o: &OrderRow| o.order.map_or_else(|| o.verdict.to_string(), |p| format!("{p:.3}"));
     let measured: Vec<String> =
@@ -227,15 +228,37 @@ fn order_claim(group: &[&OrderRow]) -> Claim {
     let theory = |o: &&OrderRow| o.theory_order.map_or_else(|| "exact".to_owned(), |p| p.to_string());
     let mut promised: Vec<String> = group.iter().map(theory).collect();
     promised.dedup();
-    // Two runs have a slope, and nothing that could contradict it.
-    let decided = |o: &&OrderRow| if o.runs < 3 { Evidence::Undecided } else { Evidence::is(o.verdict.passes()) };
+    let decided = |o: &&OrderRow| match o.verdict {
+        // Two runs have a slope, and nothing that could contradict it.
+        _ if o.runs < 3 => Some(Evidence::Undecided),
+        verdict if is_least => at_least(verdict, &o.scene),
+        verdict => Some(Evidence::is(verdict.passes())),
+    };
+    let evidence: Vec<Evidence> = judged.iter().filter_map(decided).collect();
+    let (statement, bound) = if is_least {
+        ("no less than the order that the method states", format!("at least theory less {}", first.tolerance))
+    } else {
+        ("the order of theory", format!("within {} of theory", first.tolerance))
+    };
     let texts = [
-        format!("{} on {} converges with the order of theory", first.method, first.scene),
+        format!("{} on {} converges with {statement}", first.method, first.scene),
         promised.join(", "),
         measured.join("; "),
-        format!("within {} of theory in double-double", first.tolerance),
+        format!("{bound} in double-double"),
     ];
-    claim("convergence", &format!("{}.{}.order", first.scene, first.method), texts, judged.iter().map(decided))
+    let id = format!("{}.{}.order", first.scene, first.method);
+    (!(is_least && evidence.is_empty())).then(|| claim("convergence", &id, texts, evidence))
+}
+
+/// What a verdict says where no theory was worked out: only a lower order than the method states is a fault, and that only
+/// where the motion is smooth.
+fn at_least(verdict: Verdict, scene: &str) -> Option<Evidence> {
+    let is_smooth = scenes::by_id(scene).is_ok_and(|any| any.scene().breaks_s().is_empty());
+    match verdict {
+        Verdict::AsExpected | Verdict::Exact | Verdict::SuperConvergent | Verdict::AtTheFloor => Some(Evidence::Inside),
+        Verdict::Capped if is_smooth => Some(Evidence::Outside),
+        Verdict::Capped | Verdict::NotAsymptotic | Verdict::Failed => None,
+    }
 }
 
 /// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by

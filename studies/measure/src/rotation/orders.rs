@@ -17,16 +17,11 @@ const HALVINGS: u32 = 7;
 
 /// Every scene of the selection that is a rigid body, every scheme, every step.
 pub fn measure(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
-    let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).filter(|s| is_rigid(*s)).collect();
+    let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).filter(|s| s.is_rigid()).collect();
     let jobs: Vec<(&dyn AnyScene, Scheme)> =
         scenes.iter().flat_map(|&scene| schemes.iter().map(move |&scheme| (scene, scheme))).collect();
     let cost = |(_, scheme): &(&dyn AnyScene, Scheme)| if scheme.is_implicit() { 50 } else { 1 };
     in_parallel(&jobs, cost, &selection.progress, |&(scene, scheme)| sweep(scene, scheme)).concat()
-}
-
-/// Whether a scene is a rigid body whose rotation is looked at.
-pub fn is_rigid(scene: &dyn AnyScene) -> bool {
-    scene.exact(fx128::ZERO).rotation().is_some()
 }
 
 fn sweep(scene: &dyn AnyScene, scheme: Scheme) -> Vec<Row> {

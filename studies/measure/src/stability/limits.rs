@@ -44,7 +44,7 @@ fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
     let scene = stepping.scene.scene();
     let scale = scene.info().time_scale_s;
     let found = measure(stepping, theory);
-    let closed = scene.stability_limit(stepping.method);
+    let closed = scene.expected_limit(stepping.method);
     let (low, high, beyond) = match found {
         Found::NoStep { tried_s } => (None, Some(tried_s), tried_s),
         Found::Bracket { low_s, high_s } => (Some(low_s), Some(high_s), 1.05 * high_s),

@@ -91,6 +91,10 @@ impl Scene for BoxTumbling {
         answerable::range("box-tumbling", self, &seen, end_s)
     }
 
+    fn gyroscopic_term_vanishes(&self) -> bool {
+        rigid::spins_evenly(self.inertia, self.omega)
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_of_flight(self.mass, self.inertia, lit(self.gravity), seen)
             .into_iter()

@@ -90,6 +90,10 @@ impl Scene for HeavyTop {
         answerable::phase("heavy-top", ("mgl", &self.mgl), of_gravity.to_f64(), end_s)
     }
 
+    fn gyroscopic_term_vanishes(&self) -> bool {
+        self.inertia_1 == self.inertia_3
+    }
+
     /// Energy, and the vertical component of the angular momentum: the others are not conserved.
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let Some(attitude) = seen.rotation() else { return Vec::new() };

@@ -163,6 +163,10 @@ impl Scene for Manufactured {
         Ok(())
     }
 
+    fn gyroscopic_term_vanishes(&self) -> bool {
+        self.inertia.iter().all(|i| *i == self.inertia[0])
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_of_flight(self.mass, self.inertia, lit([0.0; 3]), seen)
             .into_iter()

@@ -99,6 +99,10 @@ impl Scene for SymmetricTop {
         answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
+    fn gyroscopic_term_vanishes(&self) -> bool {
+        !self.nutates()
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account(self.inertia(), seen, fx128::ZERO, true, true)
     }

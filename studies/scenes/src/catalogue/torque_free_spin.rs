@@ -74,6 +74,10 @@ impl Scene for TorqueFreeSpin {
         rigid::check_free("torque-free-spin", &self.info(), &self.omega)
     }
 
+    fn gyroscopic_term_vanishes(&self) -> bool {
+        rigid::spins_evenly(self.inertia, self.omega)
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account(self.inertia, seen, fx128::ZERO, true, true)
     }
