@@ -289,3 +289,20 @@ fn constant_claim(o: &OrderRow) -> Option<Claim> {
 
 /// Rounding of a constant that is computed in f64 from theory.
 const ROUNDING: f64 = 1e-13;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Fails if: a higher order, or none but rounding, breaks the claim of a method without theory; a lower one does not.
+    #[test]
+    fn a_method_without_theory_is_at_fault_only_for_a_lower_order_on_a_smooth_motion() {
+        let seen = |verdict| at_least(verdict, "oscillator");
+        for better in [Verdict::AsExpected, Verdict::SuperConvergent, Verdict::Exact, Verdict::AtTheFloor] {
+            assert_eq!(seen(better), Some(Evidence::Inside), "{better}");
+        }
+        assert_eq!(seen(Verdict::Capped), Some(Evidence::Outside));
+        assert_eq!(at_least(Verdict::Capped, "bouncing-ball"), None);
+        assert_eq!(seen(Verdict::Failed), None);
+    }
+}
