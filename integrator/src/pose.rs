@@ -8,7 +8,7 @@ use nalgebra::{SVector, Vector3};
 
 use crate::real::Real;
 use crate::rotation::{Rotation, cross};
-use crate::space::{Space, Vector};
+use crate::space::{Space, Vector, sum_of_sizes};
 
 /// The position of a body with a fixed point: none. Such a pose is an attitude and nothing else.
 pub type Fixed<T> = SVector<T, 0>;
@@ -202,6 +202,9 @@ impl<T: Real, U: Update, P: Vector<T>> Space for Pose<T, U, P> {
     #[inline(always)]
     fn settled(self) -> Self {
         Pose::new(self.position, self.attitude.normalized())
+    }
+    fn size(&self) -> T {
+        sum_of_sizes(&self.position) + T::lit(1.0)
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {

@@ -63,8 +63,16 @@ pub trait Space: Copy + Debug + Send + Sync + 'static {
         self
     }
 
+    /// The sum of the sizes of the coordinates, 1 for an attitude: what their rounding is relative to.
+    fn size(&self) -> Self::Scalar;
+
     /// Whether every coordinate is finite.
     fn is_finite(&self) -> bool;
+}
+
+/// The sum of the sizes of the components.
+pub(crate) fn sum_of_sizes<T: Real, V: Vector<T>>(v: &V) -> T {
+    (0..V::DIM).fold(T::lit(0.0), |sum, i| sum + v.component(i).abs())
 }
 
 impl<T: Real, const R: usize, const C: usize> Vector<T> for SMatrix<T, R, C> {
@@ -92,6 +100,9 @@ impl<T: Real, const R: usize, const C: usize> Space for SMatrix<T, R, C> {
     #[inline(always)]
     fn retract(self, v: Self, h: T) -> Self {
         self.plus(v, h)
+    }
+    fn size(&self) -> T {
+        sum_of_sizes(self)
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {

@@ -47,14 +47,10 @@ fn table() -> Block {
 
 fn claims() -> Vec<Claim> {
     let verdicts = [Verdict::Holds, Verdict::Broken, Verdict::NotTested];
-    let claim = |(i, verdict): (usize, Verdict)| Claim {
-        id: format!("gallery.{i}"),
-        study: "gallery".to_owned(),
-        statement: format!("{} has order {} on the harmonic oscillator", METHODS[i].0, METHODS[i].1),
-        theory: METHODS[i].1.to_string(),
-        measured: "0.998 ± 0.003".to_owned(),
-        bound: "0.95 to 1.05".to_owned(),
-        verdict,
+    let claim = |(i, verdict): (usize, Verdict)| {
+        let statement = format!("{} has order {} on the harmonic oscillator", METHODS[i].0, METHODS[i].1);
+        let [theory, measured, bound] = [&METHODS[i].1.to_string(), "0.998 ± 0.003", "0.95 to 1.05"].map(str::to_owned);
+        Claim::new("gallery", format!("gallery.{i}"), [statement, theory, measured, bound], verdict)
     };
     verdicts.into_iter().enumerate().map(claim).collect()
 }

@@ -45,12 +45,18 @@ impl fmt::Display for Verdict {
 }
 
 /// One line of a report that can be true or false. The texts carry their units.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Claim {
     /// Short stable name, unique within a report: `convergence.rk4.order`.
     pub id: String,
     /// The study it belongs to: `convergence`.
     pub study: String,
+    /// The scene it is about, or empty: `kepler/circular`; a base name stands for all presets of a scene.
+    #[serde(default)]
+    pub scene: Option<String>,
+    /// The method or scheme it is about, or empty: `rk4`.
+    #[serde(default)]
+    pub method: Option<String>,
     /// What is claimed, one sentence.
     pub statement: String,
     /// What theory predicts.
@@ -61,6 +67,35 @@ pub struct Claim {
     pub bound: String,
     /// Whether it did.
     pub verdict: Verdict,
+    /// The numbers that were measured, for a sentence that quotes them.
+    #[serde(skip)]
+    pub numbers: Vec<f64>,
+}
+
+impl Claim {
+    /// A claim about no scene and no method in particular.
+    pub fn new(study: &str, id: String, [statement, theory, measured, bound]: [String; 4], verdict: Verdict) -> Self {
+        let study = study.to_owned();
+        Claim { id, study, scene: None, method: None, statement, theory, measured, bound, verdict, numbers: Vec::new() }
+    }
+
+    /// The same about a scene.
+    #[must_use]
+    pub fn on(self, scene: &str) -> Self {
+        Claim { scene: Some(scene.to_owned()), ..self }
+    }
+
+    /// The same about a method or scheme.
+    #[must_use]
+    pub fn by(self, method: &str) -> Self {
+        Claim { method: Some(method.to_owned()), ..self }
+    }
+
+    /// The same with its numbers.
+    #[must_use]
+    pub fn with_numbers(self, numbers: impl IntoIterator<Item = f64>) -> Self {
+        Claim { numbers: numbers.into_iter().collect(), ..self }
+    }
 }
 
 /// How many claims hold, are broken, were not tested.
@@ -98,8 +133,7 @@ mod tests {
     use super::*;
 
     fn claim(verdict: Verdict) -> Claim {
-        let text = String::new;
-        Claim { id: text(), study: text(), statement: text(), theory: text(), measured: text(), bound: text(), verdict }
+        Claim::new("", String::new(), Default::default(), verdict)
     }
 
     #[test]

@@ -17,6 +17,12 @@ pub struct Figure {
     pub y: Axis,
     /// What is drawn, from the back to the front within each kind.
     pub layers: Vec<Layer>,
+    /// The scene that it is about, if it is about one.
+    #[serde(default)]
+    pub scene: Option<String>,
+    /// Whether the page shows it; if not, the page links to it.
+    #[serde(default = "yes")]
+    pub on_page: bool,
     /// The command that makes this figure again.
     pub command: String,
     /// Name of the CSV file that holds every number drawn.
@@ -39,6 +45,8 @@ impl Default for Figure {
             x: Axis::default(),
             y: Axis::default(),
             layers: Vec::new(),
+            scene: None,
+            on_page: true,
             command: String::new(),
             data: String::new(),
             width: 800,
@@ -46,6 +54,10 @@ impl Default for Figure {
             equal_axes: false,
         }
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// How an axis maps its values.

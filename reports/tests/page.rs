@@ -3,15 +3,9 @@
 use reports::{Block, Claim, Figure, Finding, Page, Section, Table, Verdict};
 
 fn claim(id: &str, verdict: Verdict) -> Claim {
-    Claim {
-        id: id.to_owned(),
-        study: "convergence".to_owned(),
-        statement: format!("claim {id} & <b>"),
-        theory: "4".to_owned(),
-        measured: "3.98".to_owned(),
-        bound: "3.95..4.05".to_owned(),
-        verdict,
-    }
+    let statement = format!("claim {id} & <b>");
+    let texts = [statement.as_str(), "4", "3.98", "3.95..4.05"].map(str::to_owned);
+    Claim::new("convergence", id.to_owned(), texts, verdict)
 }
 
 fn page() -> Page {

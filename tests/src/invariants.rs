@@ -144,7 +144,7 @@ const INTEGRAL: f64 = 1e-12;
 /// the times at which the motion is not smooth.
 fn rate(scene: &dyn AnyScene, account: Account<'_>, entry: usize, balance: Balance) -> Option<String> {
     let end = scene.scene().info().horizon_s;
-    let times: Vec<f64> = std::iter::once(0.0).chain(scene.scene().breaks_s()).chain([end]).collect();
+    let times: Vec<f64> = std::iter::once(0.0).chain(scene.scene().breaks_s(end)).chain([end]).collect();
     times.windows(2).find_map(|w| {
         // A bounce is at its time to rounding: the pieces end beside it.
         let margin = 1e-9 * end;

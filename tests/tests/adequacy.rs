@@ -16,6 +16,7 @@ fn rows() -> &'static [Row] {
             methods: integrator::methods::MethodId::ALL.to_vec(),
             precisions: Precision::ALL.to_vec(),
             steps: Vec::new(),
+            end_s: None,
             quick: false,
             progress: Progress::silent(),
         })

@@ -16,6 +16,7 @@ fn everything(precisions: &[Precision]) -> Selection {
         methods: MethodId::ALL.to_vec(),
         precisions: precisions.to_vec(),
         steps: Vec::new(),
+        end_s: None,
         quick: false,
         progress: Progress::silent(),
     }

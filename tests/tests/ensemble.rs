@@ -176,6 +176,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
         methods: methods.to_vec(),
         precisions: vec![Precision::F64],
         steps: steps.to_vec(),
+        end_s: None,
         quick: true,
         progress: Progress::silent(),
     }

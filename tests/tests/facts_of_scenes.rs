@@ -2,67 +2,43 @@
 
 use integrator::Vector;
 use nalgebra::Vector3;
-use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion};
 use scenes::scene::Scene;
-use scenes::{DampedOscillator, Pendulum, SymmetricTop, TorqueFreeSpin};
+use scenes::{DampedOscillator, Pendulum};
 
-/// |omega x I omega| and the part of omega across the principal axis nearest to it, the largest of 16 times, each in parts of
-/// the largest that it could be.
-fn spin<P: Vector<f64>>(motion: BodyMotion<'_, P>, end_s: f64) -> [f64; 2] {
-    let inertia = motion.inertia();
-    (0..16).fold([0.0, 0.0], |[gyroscopic, across], k| {
-        let omega: Vector3<f64> = motion.exact(end_s * f64::from(k) / 16.0).omega_body;
-        let momentum = inertia.component_mul(&omega);
-        let off = omega.norm_squared() - omega.amax().powi(2);
-        [
-            gyroscopic.max(omega.cross(&momentum).norm() / (omega.norm() * momentum.norm())),
-            across.max(off / omega.norm_squared()),
-        ]
-    })
+/// The part of omega across the principal axis nearest to it, the largest of 16 times, as a part of omega.
+fn across<P: Vector<f64>>(motion: BodyMotion<'_, P>, end_s: f64) -> f64 {
+    let at = |k: u32| -> Vector3<f64> { motion.exact(end_s * f64::from(k) / 16.0).omega_body };
+    let across = |omega: Vector3<f64>| (omega.norm_squared() - omega.amax().powi(2)) / omega.norm_squared();
+    (0..16).map(at).map(across).fold(0.0, f64::max)
 }
 
-fn spin_of(any: &dyn AnyScene) -> Option<[f64; 2]> {
-    let end_s = any.scene().info().horizon_s;
-    match any.any_motion() {
-        AnyMotion::Pivoted(motion) => Some(spin(motion, end_s)),
-        AnyMotion::Flying(motion) => Some(spin(motion, end_s)),
-        AnyMotion::Few(_) | AnyMotion::Many(_) => None,
-    }
-}
-
-// Fails if: a scene states that its gyroscopic term vanishes, or that it turns about one axis, where it does not; or does not state
-// it where it does.
+// Fails if: a scene states that it turns about one axis where it does not, or does not state it where it does; a rigid body has no
+// attitude.
 #[test]
-fn the_gyroscopic_term_vanishes_along_the_motions_that_say_so_and_no_others() {
-    let mut without = Vec::new();
+fn a_body_turns_about_one_axis_where_it_says_so_and_nowhere_else() {
+    let mut about_one = Vec::new();
     for any in scenes::all() {
-        let Some([gyroscopic, across]) = spin_of(any.as_ref()) else {
-            assert!(!any.is_rigid() && any.exact(faer::fx128::ZERO).rotation().is_none(), "{}", any.id());
-            continue;
+        let end_s = any.scene().info().horizon_s;
+        let across = match any.any_motion() {
+            AnyMotion::Pivoted(motion) => Some(across(motion, end_s)),
+            AnyMotion::Flying(motion) => Some(across(motion, end_s)),
+            AnyMotion::Few(_) | AnyMotion::Many(_) => None,
         };
-        assert!(any.is_rigid() && any.exact(faer::fx128::ZERO).rotation().is_some(), "{}", any.id());
-        // A vector product of two rounded vectors: a few eps of their lengths. Where it does not vanish it is no accident.
-        let vanishes = |part: f64| {
-            assert!(part <= 16.0 * f64::EPSILON || part > 1e-3, "{}: {part:e} is neither", any.id());
-            part <= 16.0 * f64::EPSILON
-        };
-        assert_eq!(any.scene().gyroscopic_term_vanishes(), vanishes(gyroscopic), "{}", any.id());
-        assert_eq!(any.scene().turns_about_one_axis(), across <= 16.0 * f64::EPSILON, "{}", any.id());
-        without.extend(vanishes(gyroscopic).then(|| any.id()));
+        let has_attitude = any.exact(faer::fx128::ZERO).rotation().is_some();
+        assert_eq!((any.is_rigid(), across.is_some()), (has_attitude, has_attitude), "{}", any.id());
+        // A difference of two rounded squares: a few eps. Where it is not that, it is no accident.
+        let along = across.is_some_and(|across| across <= 16.0 * f64::EPSILON);
+        assert!(along || across.is_none_or(|across| across > 1e-3), "{}: {across:?} is neither", any.id());
+        assert_eq!(any.scene().turns_about_one_axis(), along, "{}", any.id());
+        about_one.extend(along.then(|| any.id()));
     }
-    assert_eq!(without.len(), 2, "{without:?}");
+    assert_eq!(about_one, ["principal-axis-torque"]);
 }
 
 // Fails if: a fact is that of the name of a scene and not of its parameters.
 #[test]
 fn facts_follow_the_parameters() {
-    let even = TorqueFreeSpin { inertia: [1.25; 3], ..TorqueFreeSpin::default() };
-    let about_axis = TorqueFreeSpin { omega: [0.0, 1.5, 0.0], ..TorqueFreeSpin::default() };
-    let sphere = SymmetricTop { inertia_3: 1.25, ..SymmetricTop::disc() };
-    assert!([&even as &dyn Scene, &about_axis, &sphere].iter().all(|scene| scene.gyroscopic_term_vanishes()));
-    assert!(!TorqueFreeSpin::default().gyroscopic_term_vanishes() && !SymmetricTop::rod().gyroscopic_term_vanishes());
-
     let damped = |zeta| DampedOscillator { zeta, ..DampedOscillator::default() };
     assert_eq!([0.0, 0.5, 1.0, 1.5].map(|zeta| damped(zeta).is_periodic()), [true, true, false, false]);
     assert_eq!([0.0, 0.5].map(|zeta| damped(zeta).rounding_accumulates()), [true, false]);

@@ -23,7 +23,7 @@ fn rows<S: Study>(text: &str) {
     if let Ok(rows) = reports::read_csv::<S::Row>(text, "rows.csv")
         && rows.iter().try_for_each(S::check).is_ok()
     {
-        let _ = from_rows::<S>(&rows, Format::Svg);
+        let _ = from_rows::<S>(&rows, &Plan::default(), Format::Svg);
     }
 }
 

@@ -4,12 +4,15 @@
 //! Not seen here: how many iterations it takes (one_step.rs pins them on a linear problem).
 
 use faer::fx128;
-use integrator::methods::{ImplicitEuler, ImplicitMidpoint, Rk4};
+use integrator::methods::{ImplicitEuler, ImplicitMidpoint, MethodId, Rk4};
 use integrator::pose::{Body, Exponential, Fixed};
 use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, Torque};
 use integrator::rotation::dot;
 use integrator::{Method, Model, Pose, Real, Rotation, Single, State, Twist, Vector, drive};
 use nalgebra::{Vector1, Vector3};
+use scenes::any::AnyScene;
+use scenes::observation::Quantity;
+use scenes::run::{Outcome, Precision, Run};
 
 /// x'' = -x.
 struct Unit;
@@ -215,5 +218,77 @@ fn small_numbers_are_solved_as_well_as_large_ones() {
         for (large, small) in end(1.0).into_iter().zip(end(scale)) {
             assert_eq!([large.q.x * scale, large.v.x * scale], [small.q.x, small.v.x], "h = {h}");
         }
+    }
+}
+
+/// A scene with parameters, and its steps in natural time scales.
+type Resting = (&'static str, &'static [(&'static str, &'static str)], &'static [f64]);
+
+/// Bodies that are at rest, start from rest, come to rest, turn round, or die away. A step of four time scales has a solution
+/// where the force is linear.
+const RESTING: [Resting; 12] = [
+    ("forced-oscillator", &[("drive", "0"), ("damping", "2")], &[1e-3, 0.25, 4.0, 1000.0]),
+    ("forced-oscillator", &[("drive", "0"), ("damping", "2"), ("x0", "0"), ("v0", "0")], &[1e-3, 0.25, 4.0]),
+    ("forced-oscillator", &[("drive", "0"), ("stiffness", "0.021"), ("x0", "-0.35"), ("v0", "119")], &[0.25, 4.0]),
+    ("damped-oscillator", &[("mass", "1"), ("stiffness", "170"), ("zeta", "0.997"), ("v0", "0")], &[0.05, 0.25, 4.0]),
+    ("damped-oscillator/over-damped", &[("x0", "0")], &[0.25, 4.0]),
+    ("oscillator", &[("v0", "0")], &[1e-3, 0.25, 4.0]),
+    ("oscillator", &[("x0", "0"), ("v0", "0")], &[0.25, 4.0]),
+    ("linear-drag", &[], &[1e-3, 0.25, 4.0, 1000.0]),
+    ("quadratic-drag/fall", &[], &[1e-3, 0.25]),
+    ("pendulum", &[("angle", "0"), ("omega", "0")], &[1e-3, 0.25]),
+    ("pendulum", &[("omega", "0")], &[1e-3, 0.25]),
+    ("spring-chain", &[], &[1e-3, 4.0]),
+];
+
+fn resting((id, set, _): Resting) -> Box<dyn AnyScene> {
+    let mut scene = scenes::by_id(id).expect("a scene of the catalogue");
+    for (name, value) in set {
+        scene.scene_mut().set(id, name, value).expect("a value of the range");
+    }
+    scene
+}
+
+// Fails if: the iteration stops at rounding of the unknowns alone, which are next to nothing at rest, or the differences of the Jacobian are
+// lost in the rounding of the configuration there; what dies away to denormal numbers is compared with their own epsilon.
+#[test]
+fn a_body_at_rest_under_a_load_keeps_stepping() {
+    let mut failed = Vec::new();
+    for case in RESTING {
+        let scene = resting(case);
+        let scale = scene.scene().info().time_scale_s;
+        for method in [MethodId::ImplicitEuler, MethodId::ImplicitMidpoint] {
+            for (precision, steps) in [(Precision::F32, 4000), (Precision::F64, 4000), (Precision::DoubleDouble, 400)] {
+                for z in case.2 {
+                    let run = Run::new(method, precision, z * scale * steps as f64, steps);
+                    let run = scene.run(&run, steps).expect("a general method");
+                    if run.outcome != Outcome::Finished {
+                        failed.push(format!(
+                            "{} {:?} {} {precision:?} h = {z}: step {:?}",
+                            case.0,
+                            case.1,
+                            method.id(),
+                            run.failed_step
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+// Fails if: the iteration takes a correction of a body at rest for rounding that is not.
+#[test]
+fn a_body_comes_to_rest_where_its_load_is_carried() {
+    // -k x + F = 0 with F / k = 2.25 / 6 = 0.375: implicit Euler is there after 400 steps of a quarter of a time scale.
+    let scene = resting(RESTING[0]);
+    let end_s = 100.0 * scene.scene().info().time_scale_s;
+    for precision in Precision::ALL {
+        let run = scene.run(&Run::new(MethodId::ImplicitEuler, precision, end_s, 400), 400).expect("a general method");
+        let end = run.end().expect("finished").vector(Quantity::Position)[0];
+        let error = (end - fx128::lit(0.375)).0.abs();
+        // The position rounds by an eps of it a step and moves back by h^2 k / (m + h c + h^2 k) of what it is off.
+        assert!(error <= 64.0 * precision.epsilon() * 0.375, "{precision:?}: {error:e}");
     }
 }

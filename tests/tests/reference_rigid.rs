@@ -168,16 +168,13 @@ proptest! {
         solves(&body, t, 2.0 + 2.0 * Vector3::from(omega).norm(), 1.0 + t.abs())?;
     }
 
-    /// The two solutions of Kummer's equation are e^(pi |p|) larger than their combination, and lose 1 + |Z| in segments.
+    /// A rounding for each step of the series, of which there are rate |t| / 2.
     #[test]
     fn a_sphere_under_an_oblique_torque(omega in components(1.5), torque in components(1.0), t in -4.0..4.0_f64) {
         let strength = Vector3::from(torque).norm();
-        let across = Vector3::from(omega).cross(&Vector3::from(torque)).norm() / strength;
         let body = SphereTorque { omega, torque, ..Default::default() };
-        let p = across * across * body.inertia / (8.0 * strength);
-        prop_assume!(p < 1.5);
         let rate = 1.0 + Vector3::from(omega).norm() + strength / body.inertia * (1.0 + t.abs());
-        solves(&body, t, rate, 8.0 * (1.0 + rate * rate) * (2.0 * std::f64::consts::PI * p).exp())?;
+        solves(&body, t, rate, 8.0 * (1.0 + rate * rate))?;
     }
 
     /// Started at a turning point of the tilt: about e1 tilted, so that omega_1 = 0 keeps the tilt for the moment.

@@ -2,11 +2,9 @@
 
 use faer::fx128;
 use integrator::real::{Real, Single};
-use nalgebra::Complex;
 use proptest::prelude::*;
 use scenes::special::jacobi::{Jacobi, Modulus, am, jacobi};
 use scenes::special::kepler::eccentric_anomaly;
-use scenes::special::kummer::hypergeometric_1f1;
 use scenes::special::{elementary, elliptic};
 use verification::derivative;
 
@@ -107,29 +105,6 @@ proptest! {
         let (sine, slope) = (found.sine.0, 1.0 - e * found.cosine.0);
         let bound = f64::EPSILON * (found.angle.0.abs() + mean.abs() / slope);
         prop_assert!(size(coarse.angle.widen() - found.angle) <= bound, "sine {sine}");
-    }
-
-    /// 1F1(p; 1/2; Z) and s 1F1(p + 1/2; 3/2; Z), Z = i s^2 / 2, solve one equation of Wronskian e^Z: f g' - f' g = e^Z.
-    #[test]
-    fn kummer_functions_keep_their_wronskian(p in 0.0..2.0_f64, s in 0.05..24.0_f64) {
-        let (p, i) = (Complex::new(fx128::ZERO, dd(p)), Complex::new(fx128::ZERO, fx128::ONE));
-        let real = |x: f64| Complex::new(dd(x), fx128::ZERO);
-        let z = i * real(s) * real(s) * real(0.5);
-        let even = hypergeometric_1f1(p, dd(0.5), z);
-        let odd = hypergeometric_1f1(p + real(0.5), dd(1.5), z);
-        let z_rate = i * real(s);
-        let (f, f_rate, g) = (even.value, even.derivative * z_rate, odd.value * real(s));
-        let g_rate = odd.value + odd.derivative * z_rate * real(s);
-        let (sine, cosine) = z.im.sin_cos();
-        let error = f * g_rate - f_rate * g - Complex::new(cosine, sine);
-        // 64 eps (1 + |z|) in each factor, which are of size s and more at the larger p.
-        let scale = 1.0 + (f.norm_sqr() * g_rate.norm_sqr()).0.sqrt() + (f_rate.norm_sqr() * g.norm_sqr()).0.sqrt();
-        prop_assert!(size(error.re) + size(error.im) <= 128.0 * EPS * (1.0 + z.im.0) * scale, "{error:?}");
-        // (a / b) 1F1(a + 1; b + 1; z), by its own series, is the derivative.
-        let next = hypergeometric_1f1(p + real(1.0), dd(1.5), z).value * (p + p);
-        let error = next - even.derivative;
-        let scale = 1.0 + next.norm_sqr().0.sqrt() + f.norm_sqr().0.sqrt();
-        prop_assert!(size(error.re) + size(error.im) <= 128.0 * EPS * (1.0 + z.im.0) * scale, "{error:?}");
     }
 
     #[test]

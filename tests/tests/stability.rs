@@ -203,6 +203,7 @@ fn every_claim_of_a_quick_study_holds() {
         methods: MethodId::ALL.to_vec(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
+        end_s: None,
         quick: true,
         progress: Progress::silent(),
     };
@@ -219,4 +220,46 @@ fn every_claim_of_a_quick_study_holds() {
     let claims = Stability::claims(&wrong);
     let kept: Vec<_> = claims.iter().filter(|claim| claim.verdict != Verdict::Broken).collect();
     assert!(!claims.is_empty() && kept.is_empty(), "{kept:#?}");
+}
+
+fn lightly_damped(zeta: &str) -> Box<dyn AnyScene> {
+    let mut scene = scene("damped-oscillator");
+    for (name, value) in [("mass", "1"), ("stiffness", "150"), ("zeta", zeta)] {
+        scene.scene_mut().set("damped-oscillator", name, value).expect("a value of the range");
+    }
+    scene
+}
+
+// |1 + h l|^2 = 1 - 2 zeta z + z^2: explicit Euler is stable up to z = 2 zeta, and just beyond grows by next to nothing per step.
+// Fails if: a run of 2^14 steps decides whatever its growth (0.0243 for 0.0204); the ladder of theory ends at z = 0.002.
+#[test]
+fn light_damping_is_judged_by_runs_as_long_as_its_growth_needs() {
+    for (text, zeta) in [("0.0102", 0.0102), ("0.004", 0.004)] {
+        let spring = lightly_damped(text);
+        for precision in [Precision::F32, Precision::F64] {
+            let stepping = Stepping { scene: spring.as_ref(), method: MethodId::ExplicitEuler, precision };
+            let theory = amplification::limit(&stepping).expect("linear");
+            let trial = limits::Trial::of(&stepping, theory);
+            let measure::stability::bisect::Found::Bracket { low_s, high_s } = limits::measure(&stepping, theory)
+            else {
+                panic!("zeta = {zeta}: no bracket")
+            };
+            let [low, high] = [low_s, high_s].map(|h| h * 150.0_f64.sqrt() / (2.0 * zeta));
+            println!("zeta = {zeta} {precision:?}: {low} .. {high} {trial:?}");
+            assert!(
+                low <= 1.0 + limits::UNSEEN * trial.width && 1.0 <= high,
+                "zeta = {zeta}: {low} .. {high}, {trial:?}"
+            );
+            assert!(high / low - 1.0 <= 2.0 * trial.width && trial.sees, "zeta = {zeta}: {low} .. {high}, {trial:?}");
+        }
+    }
+    for zeta in ["0.0001", "0.000001"] {
+        let spring = lightly_damped(zeta);
+        let stepping = Stepping { scene: spring.as_ref(), method: MethodId::ExplicitEuler, precision: Precision::F64 };
+        let Some(StabilityLimit::Below(h)) = amplification::limit(&stepping) else { panic!("zeta = {zeta}: a limit") };
+        let expected = 2.0 * zeta.parse::<f64>().expect("a number") / 150.0_f64.sqrt();
+        // The determinant misses 1 by 1e-24 of its terms at most, beside 2 zeta z = 8e-12 of it.
+        assert!((h / expected - 1.0).abs() < 1e-11, "zeta = {zeta}: {h} {expected}");
+        assert!(!limits::Trial::of(&stepping, StabilityLimit::Below(h)).sees, "no run shows growth of zeta^2 per step");
+    }
 }

@@ -17,6 +17,7 @@ fn selection() -> Selection {
         methods: vec![MethodId::SemiImplicitEuler, MethodId::Rk4, MethodId::ImplicitMidpoint],
         precisions: vec![Precision::F32, Precision::F64, Precision::DoubleDouble],
         steps: vec![64, 100, 32],
+        end_s: None,
         quick: true,
         progress: Progress::silent(),
     }

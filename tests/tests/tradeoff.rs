@@ -27,6 +27,7 @@ fn selection(ids: &[&str]) -> Selection {
         methods: MethodId::ALL.to_vec(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
+        end_s: None,
         quick: false,
         progress: Progress::silent(),
     }
@@ -74,8 +75,11 @@ fn tables_and_charts_are_the_same_from_the_csv() {
     let csv = write_csv(rows()).expect("flat rows");
     let again: Vec<Row> = read_csv(&csv, "tradeoff.csv").expect("what was written");
     assert_eq!(again, rows());
-    let files =
-        |rows: &[Row]| programs::produce::from_rows::<Tradeoff>(rows, Format::Svg).expect("rows have a form").files;
+    let files = |rows: &[Row]| {
+        programs::produce::from_rows::<Tradeoff>(rows, &programs::plan::Plan::default(), Format::Svg)
+            .expect("rows have a form")
+            .files
+    };
     assert!(files(rows()) == files(&again));
 }
 

@@ -1,6 +1,6 @@
 use crate::methods::facts::{Facts, LinearTheory, Rational};
 use crate::model::{Method, Model, State};
-use crate::newton::{Pair, no_solution, solve};
+use crate::newton::{Pair, crossing_speed, no_solution, solve};
 use crate::real::Single;
 use crate::space::{Space, Vector};
 
@@ -33,7 +33,7 @@ impl<T: Single, M: Model<T>> Method<T, M> for ImplicitEuler {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), h) };
         let end = |z: &Pair<_>| State { q: s.q.retract(z.w, h), v: z.v };
-        let solution = solve::<T, _>(guess, &|z| {
+        let solution = solve::<T, _>(guess, crossing_speed(&s.q, h), &|z| {
             let s1 = end(z);
             Pair { w: z.w - m.velocity(s1.q, s1.v), v: z.v - s.v.plus(m.rate(t + h, &s1), h) }
         });

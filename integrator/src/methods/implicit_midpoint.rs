@@ -1,6 +1,6 @@
 use crate::methods::facts::{Facts, LinearTheory, Rational};
 use crate::model::{Method, Model, State};
-use crate::newton::{Pair, no_solution, solve};
+use crate::newton::{Pair, crossing_speed, no_solution, solve};
 use crate::real::Single;
 use crate::space::{Space, Vector};
 
@@ -38,7 +38,7 @@ impl<T: Single, M: Model<T>> Method<T, M> for ImplicitMidpoint {
         let half = h * T::lit(0.5);
         let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), half) };
         // The unknown is the middle of the step: w, and vm.
-        let solution = solve::<T, _>(guess, &|z| {
+        let solution = solve::<T, _>(guess, crossing_speed(&s.q, h), &|z| {
             let middle = State { q: s.q.retract(z.w, half), v: z.v };
             let w = m.velocity(middle.q, middle.v);
             Pair { w: z.w - w, v: z.v - s.v.plus(m.rate(t + half, &middle), half) }

@@ -140,22 +140,36 @@ mod tests {
         assert!(write_file(&at("round"), "new").expect_err("endless").to_string().contains("circle"));
     }
 
+    // No device of the machine is named here: a fault of the code would replace it.
     #[cfg(target_os = "linux")]
     #[test]
     fn what_is_no_regular_file_is_refused_and_untouched() {
         let keep = tempfile::tempdir().expect("a temporary directory");
-        let pipe = keep.path().join("pipe");
-        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
-        let link = keep.path().join("link");
-        std::os::unix::fs::symlink("/dev/null", &link).expect("linked");
-        for path in [Path::new("/dev/full"), &pipe, &link, keep.path(), Path::new("/")] {
-            let error = write_file(path, "new").expect_err("no file").to_string();
+        let at = |name: &str| keep.path().join(name);
+        let make = |program: &str, name: &str, kind: &[&str]| {
+            std::process::Command::new(program)
+                .arg(at(name))
+                .args(kind)
+                .output()
+                .is_ok_and(|made| made.status.success())
+        };
+        assert!(make("mkfifo", "pipe", &[]));
+        let _socket = std::os::unix::net::UnixListener::bind(at("socket")).expect("bound");
+        std::os::unix::fs::symlink("pipe", at("link")).expect("linked");
+        fs::create_dir(at("directory")).expect("created");
+        // Only root may make one.
+        let device = make("mknod", "full", &["c", "1", "7"]).then_some("full");
+        let kinds = ["pipe", "socket", "link", "directory"].into_iter().chain(device);
+        let before = names(keep.path());
+        for path in kinds.map(at).chain([PathBuf::from("/")]) {
+            let error = write_file(&path, "new").expect_err("no file").to_string();
             assert!(
                 error.contains(&path.display().to_string()) && error.contains("give the name of a file"),
                 "{error}"
             );
         }
-        assert_eq!(names(keep.path()), ["link", "pipe"]);
+        assert_eq!(names(keep.path()), before);
+        assert!(fs::symlink_metadata(at("link")).expect("there").is_symlink());
     }
 
     // Fails if: what another run is writing is swept, or a file with a name like it.

@@ -138,7 +138,7 @@ mod tests {
                 let (major, minor) = log(at - width, at + width, 8);
                 assert!(major.iter().map(|tick| tick.at).chain(minor).all(f64::is_finite), "{at} {width}");
             }
-            assert!(linear(-at, at, 8).len() + linear(at, at, 8).len() < 1001);
+            assert!(linear(-at, at, 8, 0).len() + linear(at, at, 8, 0).len() < 1001);
         }
     }
 

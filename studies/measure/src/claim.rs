@@ -50,14 +50,15 @@ pub fn verdict(evidence: impl IntoIterator<Item = Evidence>) -> Verdict {
 
 /// The claim of a study with its statement, theory, measurement and bound in words, judged by its evidence. Its full name is
 /// `study.id`.
-pub fn claim(
-    study: &str,
-    id: &str,
-    [statement, theory, measured, bound]: [String; 4],
-    evidence: impl IntoIterator<Item = Evidence>,
-) -> Claim {
-    let (id, study) = (format!("{study}.{id}"), study.to_owned());
-    Claim { id, study, statement, theory, measured, bound, verdict: verdict(evidence) }
+pub fn claim(study: &str, id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Evidence>) -> Claim {
+    Claim::new(study, format!("{study}.{id}"), texts, verdict(evidence))
+}
+
+/// The name that two of the claims have, where two have one: rows of one run then stand twice, or under another's name.
+pub fn repeated(claims: &[Claim]) -> Option<&str> {
+    let mut ids: Vec<&str> = claims.iter().map(|claim| claim.id.as_str()).collect();
+    ids.sort_unstable();
+    ids.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
 /// The largest of some sizes: NaN if any of them is, `None` if any is missing or there is none.
@@ -106,6 +107,14 @@ mod tests {
             prop_assert_eq!(near, Evidence::is(off.abs() < 1.0));
             prop_assert_eq!(within, near);
         }
+    }
+
+    // Fails if: a name that stands twice is not seen, or one that only begins like another is.
+    #[test]
+    fn a_name_that_two_claims_have_is_found() {
+        let named = |id: &str| claim("s", id, [(); 4].map(|()| String::new()), []);
+        assert_eq!(repeated(&["b", "a", "ab"].map(named)), None);
+        assert_eq!(repeated(&["b", "a", "b"].map(named)), Some("s.b"));
     }
 
     // Fails if: the largest starts from 0, or skips what is missing or not a number.

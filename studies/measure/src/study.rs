@@ -18,12 +18,40 @@ pub struct Selection {
     pub methods: Vec<MethodId>,
     /// The precisions.
     pub precisions: Vec<Precision>,
-    /// The numbers of steps of a sweep; empty for the halvings that each scene suggests.
+    /// The numbers of steps of a sweep, in increasing order; empty for the halvings that each scene suggests.
     pub steps: Vec<u64>,
+    /// The length of a run, s; `None` for the horizon of each scene.
+    pub end_s: Option<f64>,
     /// Fewer and shorter runs.
     pub quick: bool,
     /// The bar to be shown.
     pub progress: Progress,
+}
+
+/// No sweep that was not asked for takes more steps in a run.
+const MOST_STEPS: u64 = 1 << 22;
+
+impl Selection {
+    /// The end of an error run of a scene, s.
+    pub fn end_s(&self, scene: &dyn AnyScene) -> f64 {
+        self.end_s.unwrap_or(scene.scene().info().horizon_s)
+    }
+
+    /// The numbers of steps of an error sweep: those asked for, or the halvings from the scene's coarsest step.
+    pub fn sweep(&self, scene: &dyn AnyScene, halvings: std::ops::RangeInclusive<u32>) -> Vec<u64> {
+        if !self.steps.is_empty() {
+            return self.steps.clone();
+        }
+        let coarsest = self.coarsest_steps(scene);
+        halvings.map(|k| coarsest << k).filter(|&steps| steps <= MOST_STEPS).collect()
+    }
+
+    /// Steps of the coarsest run: as long as those of the scene's own horizon.
+    pub fn coarsest_steps(&self, scene: &dyn AnyScene) -> u64 {
+        let info = scene.scene().info();
+        let longer = (self.end_s(scene) / info.horizon_s).log2().ceil().clamp(0.0, 40.0);
+        info.coarsest_steps << longer as u32
+    }
 }
 
 /// One question, from the runs to the verdicts. Everything after [`Study::measure`] can start from the CSV of its rows.
@@ -42,6 +70,10 @@ pub trait Study {
     /// How it answers it, for a reader of the report.
     const INTRO: &'static str;
 
+    /// The keys of a plan that it heeds besides `scene`, `method`, `set` and `quick`. A plan of this study alone that gives another
+    /// is refused.
+    const HEEDS: &'static [&'static str];
+
     /// Runs what it needs.
     fn measure(selection: &Selection) -> Vec<Self::Row>;
 
@@ -53,12 +85,6 @@ pub trait Study {
 
     /// Charts of the rows.
     fn figures(rows: &[Self::Row]) -> Vec<Figure>;
-
-    /// Whether a figure stands on the page itself; the others are files that the page links to.
-    fn is_on_page(figure: &Figure) -> bool {
-        let _ = figure;
-        true
-    }
 
     /// What the rows show, against theory.
     fn claims(rows: &[Self::Row]) -> Vec<Claim>;
@@ -119,11 +145,6 @@ pub fn short(x: Option<f64>) -> String {
 /// The palette index of a method: the same in every chart.
 pub fn color_of(method: MethodId) -> usize {
     MethodId::ALL.iter().position(|m| *m == method).unwrap_or(0)
-}
-
-/// The command that makes a figure of one scene again.
-pub fn command(study: &str, scene: &str) -> String {
-    format!("cargo run --release --bin {study} -- --scene {scene}")
 }
 
 /// The different values, in the order in which they first appear.

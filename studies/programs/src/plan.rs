@@ -39,6 +39,11 @@ pub struct Plan {
     #[arg(long, value_name = "N,N,..", value_delimiter = ',', value_parser = steps, allow_hyphen_values = true)]
     pub steps: Vec<u64>,
 
+    /// Length of a run, s [default: the scene's horizon]
+    #[arg(long = "for", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
+    pub for_s: Option<Seconds>,
+
     /// One preset of each scene, fewer halvings and shorter runs
     #[arg(long)]
     pub quick: bool,
@@ -48,6 +53,33 @@ const STEPS_REMEDY: &str = "a run has at least 1 step; give numbers such as 64,1
 
 fn steps(text: &str) -> Result<u64, String> {
     text.trim().parse().ok().filter(|&n| n > 0).ok_or_else(|| format!("not a number of steps; {STEPS_REMEDY}"))
+}
+
+/// A length of time, s: positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "f64", into = "f64")]
+pub struct Seconds(f64);
+
+/// Positive and finite numbers are equal to themselves.
+impl Eq for Seconds {}
+
+const SECONDS_REMEDY: &str = "not a length of time; give seconds above 0, such as 2.5";
+
+impl TryFrom<f64> for Seconds {
+    type Error = String;
+    fn try_from(s: f64) -> Result<Self, String> {
+        if s.is_finite() && s > 0.0 { Ok(Seconds(s)) } else { Err(SECONDS_REMEDY.to_owned()) }
+    }
+}
+
+impl From<Seconds> for f64 {
+    fn from(Seconds(s): Seconds) -> f64 {
+        s
+    }
+}
+
+fn seconds(text: &str) -> Result<Seconds, String> {
+    text.trim().parse::<f64>().map_err(|_| SECONDS_REMEDY.to_owned())?.try_into()
 }
 
 /// The head of every plan file that is written.
@@ -73,7 +105,7 @@ impl Plan {
     }
 
     fn keys() -> &'static str {
-        "scene, method, precision, set (lists of texts), steps (a list of numbers) and quick (true or false)"
+        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds) and quick (true or false)"
     }
 
     /// The plan as TOML.
@@ -101,8 +133,26 @@ impl Plan {
             precision: either(flags.precision, self.precision),
             set: kept.chain(flags.set.iter().cloned()).collect(),
             steps: either(flags.steps, self.steps),
+            for_s: flags.for_s.or(self.for_s),
             quick: self.quick || flags.quick,
         }
+    }
+
+    /// Refuses a key that the study `id`, which heeds those of `heeds`, would not look at: no run does less than its plan says.
+    ///
+    /// # Errors
+    /// The first such key.
+    pub fn heeded(&self, id: &str, heeds: &[&str]) -> Result<(), Error> {
+        let given = [
+            ("precision", !self.precision.is_empty()),
+            ("steps", !self.steps.is_empty()),
+            ("for", self.for_s.is_some()),
+        ];
+        let unheard = given.into_iter().find(|(key, is_given)| *is_given && !heeds.contains(key));
+        unheard.map_or(Ok(()), |(key, _)| {
+            let message = format!("{id} runs what it needs, whatever is given; leave it out");
+            Err(Error::plan(format!("--{key}"), message))
+        })
     }
 
     /// The flags beside `--scene` that run this plan again on one scene (on all where it is `None`), with a blank before each.
@@ -121,6 +171,9 @@ impl Plan {
         add("set", &self.set.iter().filter(takes).cloned().collect::<Vec<_>>());
         let steps: Vec<String> = self.steps.iter().map(u64::to_string).collect();
         add("steps", &if steps.is_empty() { Vec::new() } else { vec![steps.join(",")] });
+        if let Some(Seconds(s)) = self.for_s {
+            flags += &format!(" --for {s}");
+        }
         if self.quick {
             flags += " --quick";
         }
@@ -146,14 +199,33 @@ impl Plan {
             distinct(&self.scene).into_iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
         };
         self.apply_settings(&mut chosen)?;
+        let end_s = self.end_s(&chosen)?;
         Ok(Selection {
             scenes: chosen,
             methods: named(&self.method, method_from_id, MethodId::ALL)?,
             precisions: named(&self.precision, Precision::from_id, &Precision::ALL)?,
-            steps: distinct(self.steps.iter().copied()),
+            steps: {
+                let mut steps = distinct(self.steps.iter().copied());
+                steps.sort_unstable();
+                steps
+            },
+            end_s,
             quick: self.quick,
             progress: Progress::silent(),
         })
+    }
+
+    /// The length of the runs, where it is given.
+    fn end_s(&self, chosen: &[Box<dyn AnyScene>]) -> Result<Option<f64>, Error> {
+        let Some(Seconds(end_s)) = self.for_s else { return Ok(None) };
+        match chosen.iter().find(|scene| scene.scene().ends_s() <= end_s) {
+            Some(scene) => {
+                let message =
+                    format!("the motion of {} is over at {:.4} s; give less", scene.id(), scene.scene().ends_s());
+                Err(Error::plan("for".to_owned(), message))
+            }
+            None => Ok(Some(end_s)),
+        }
     }
 
     fn apply_settings(&self, chosen: &mut [Box<dyn AnyScene>]) -> Result<(), Error> {

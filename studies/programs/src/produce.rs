@@ -100,8 +100,7 @@ impl Source {
     /// # Errors
     /// Rows that cannot be read, or that have no form as text; figures that cannot be drawn.
     pub fn product<S: Study>(&mut self) -> Result<Product, Error> {
-        let product = from_rows::<S>(&self.rows::<S>()?, self.format)?;
-        Ok(by_plan(product, &self.manifest.plan))
+        from_rows::<S>(&self.rows::<S>()?, &self.manifest.plan, self.format)
     }
 
     /// Every study of the report, in its order: measured one after the other, each on all cores, and then drawn and judged
@@ -112,68 +111,62 @@ impl Source {
     pub fn all(&mut self) -> Result<Vec<Product>, Error> {
         let format = self.format;
         let mut made: Vec<Making> = Vec::new();
+        let plan = self.manifest.plan.clone();
         macro_rules! measure {
             ($($study:ty),*) => {$(
                 let rows = self.rows::<$study>()?;
-                made.push(Box::new(move || from_rows::<$study>(&rows, format)));
+                made.push(Box::new(move |plan| from_rows::<$study>(&rows, plan, format)));
             )*};
         }
         measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Tradeoff);
-        let plan = &self.manifest.plan;
-        made.into_par_iter().map(|make| Ok(by_plan(make()?, plan))).collect()
+        made.into_par_iter().map(|make| make(&plan)).collect()
     }
 }
 
-/// The product with commands that name the plan's flags, too: what is read under a chart makes that very chart.
-fn by_plan(mut product: Product, plan: &Plan) -> Product {
-    fn complete(block: &mut Block, plan: &Plan) {
-        match block {
-            Block::Figure(figure) => {
-                let scene = figure.command.split_once("--scene ").map(|(_, scene)| scene);
-                let separator = if scene.is_none() && !figure.command.contains(" -- ") { " --" } else { "" };
-                let flags = plan.flags(scene);
-                if !flags.is_empty() {
-                    figure.command += &format!("{separator}{flags}");
-                }
-            }
-            Block::Group { blocks, .. } => blocks.iter_mut().for_each(|block| complete(block, plan)),
-            _ => {}
-        }
-    }
-    product.section.blocks.iter_mut().for_each(|block| complete(block, plan));
-    product
+/// The command that makes a figure again: the study, the figure's scene and the plan's flags.
+fn command(study: &str, figure: &Figure, plan: &Plan) -> String {
+    let scene = figure.scene.as_deref();
+    let flags = scene.map_or_else(String::new, |scene| format!(" --scene {scene}")) + &plan.flags(scene);
+    let separator = if flags.is_empty() { "" } else { " --" };
+    format!("cargo run --release --bin {study}{separator}{flags}")
 }
 
 /// What follows from the rows of one study, still to be made.
-type Making = Box<dyn FnOnce() -> Result<Product, Error> + Send>;
+type Making = Box<dyn FnOnce(&Plan) -> Result<Product, Error> + Send>;
 
 /// All that follows from the rows of a study, without running anything.
 ///
 /// # Errors
 /// Rows or figures that have no form as text.
-pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, Error> {
+pub fn from_rows<S: Study>(rows: &[S::Row], plan: &Plan, format: Format) -> Result<Product, Error> {
     let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?.into_bytes())];
     let claims = S::claims(rows);
+    if let Some(id) = measure::claim::repeated(&claims) {
+        let message =
+            format!("two claims are named {id}: rows of a run stand twice or under another's name; run again");
+        return Err(Error::plan(format!("{}.csv", S::ID), message));
+    }
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
+    let mut figures = S::figures(rows);
+    for figure in figures.iter_mut().filter(|figure| figure.command.is_empty()) {
+        figure.command = command(S::ID, figure, plan);
+    }
     let (mut blocks, mut linked) = (Vec::new(), Vec::new());
-    for (figure, drawn) in drawn(S::figures(rows), format)? {
+    for (figure, drawn) in drawn(figures, format)? {
         files.extend(drawn);
-        if S::is_on_page(&figure) {
+        if figure.on_page {
             blocks.push(Block::Figure(figure));
         } else {
-            linked.push((figure.title, format!("{}.{}", figure.id, format.ending())));
+            linked.push((figure.scene, (figure.title, format!("{}.{}", figure.id, format.ending()))));
         }
-    }
-    if !linked.is_empty() {
-        blocks.push(Block::Links { caption: "More charts".to_owned(), files: linked });
     }
     blocks.push(Block::Claims(claims.clone()));
     for Derived { name, caption, csv, table } in S::tables(rows)? {
         files.push((format!("{name}.csv"), csv.into_bytes()));
         blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
-    let section = page::section::<S>(blocks);
+    let section = page::section::<S>(blocks, linked);
     Ok(Product { files, section, claims })
 }
 
@@ -200,6 +193,7 @@ fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
 /// # Errors
 /// Bad input, or an output that cannot be written.
 pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
+    common.plan.heeded(S::ID, S::HEEDS)?;
     let mut source = Source::of(common)?;
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, .. } = source.product::<S>()?;

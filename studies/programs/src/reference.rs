@@ -124,7 +124,7 @@ fn theory(any: &dyn AnyScene) -> Table {
     let start = any.exact_in(Precision::F64, 0.0);
     for &method in MethodId::ALL {
         for (quantity, _) in start.distances(&start) {
-            let theory = any.scene().expected_error(method, quantity);
+            let theory = any.scene().expected_error(method, quantity, any.scene().info().horizon_s);
             let order = match theory.order {
                 ExpectedOrder::Exact => "exact".to_owned(),
                 ExpectedOrder::Of(order) => order.to_string(),

@@ -9,10 +9,11 @@ use crate::erased::{AnyMotion, ErasedPlace, FlatSpace};
 use crate::motion::{Motion, RigidMotion};
 use crate::observation::Observation;
 use crate::residual::{Residual, residual};
-use crate::run::{Place, Precision, Run, Trajectory, run_flat};
+use crate::run::{Place, Precision, Run, Shown, Trajectory, run_flat};
 use crate::scene::Scene;
 use crate::timed;
 use crate::timed::{Lap, Laps};
+use crate::variation::{Leading, leading};
 
 /// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
 pub trait AnyScene: Send + Sync {
@@ -39,7 +40,12 @@ pub trait AnyScene: Send + Sync {
 
     /// Runs one trajectory and observes it at every multiple of `stride` steps, and at the end; `None` for a step that the
     /// scene cannot take, because it is no rigid body.
-    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory>;
+    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory> {
+        self.show(run, Shown::Every(stride))
+    }
+
+    /// Runs one trajectory and shows of it what is asked for; `None` as for [`Self::run`].
+    fn show(&self, run: &Run, shown: Shown<'_>) -> Option<Trajectory>;
 
     /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
     /// [`timed`].
@@ -51,6 +57,9 @@ pub trait AnyScene: Send + Sync {
         let _ = (run, displacement, looks);
         None
     }
+
+    /// The leading errors of the methods whose local errors theory knows, up to `end_s`: see [`leading`].
+    fn leading(&self, end_s: f64) -> Vec<Leading>;
 
     /// The model and its exact motion in f64, of which only the space is known: for methods and models from outside.
     fn any_motion(&self) -> AnyMotion<'_>;
@@ -94,8 +103,8 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn residual(&self, t: fx128, h_s: f64) -> Residual {
         residual(&self.scene, t, h_s)
     }
-    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory> {
-        in_precision!(run.precision, T => run_flat::<T, <S as Model<T>>::Config>(&self.scene, run, stride))
+    fn show(&self, run: &Run, shown: Shown<'_>) -> Option<Trajectory> {
+        in_precision!(run.precision, T => run_flat::<T, <S as Model<T>>::Config>(&self.scene, run, shown))
     }
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
         match run.precision {
@@ -108,6 +117,9 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
         in_precision!(run.precision, T => {
             run_displaced::<T, <S as Model<T>>::Config>(&self.scene, run, displacement, looks)
         })
+    }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        leading::<<S as Model<fx128>>::Config>(&self.scene, end_s, self.scene.info().time_scale_s)
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <S as Model<f64>>::Config::erase(&self.scene)
@@ -143,10 +155,10 @@ where
     fn residual(&self, t: fx128, h_s: f64) -> Residual {
         residual(&WorldOmega::<&B>::new(&self.scene), t, h_s)
     }
-    fn run(&self, run: &Run, stride: u64) -> Option<Trajectory> {
+    fn show(&self, run: &Run, shown: Shown<'_>) -> Option<Trajectory> {
         Some(in_precision!(run.precision, T => {
             let start = RigidMotion::<T>::exact(&self.scene, T::lit(0.0));
-            <B as RigidBody<T>>::Position::run(&self.scene, start, run, stride)
+            <B as RigidBody<T>>::Position::show(&self.scene, start, run, shown)
         }))
     }
     fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
@@ -156,6 +168,9 @@ where
             Precision::F64 => timed::body(&self.scene, run, laps),
             Precision::DoubleDouble => None,
         }
+    }
+    fn leading(&self, end_s: f64) -> Vec<Leading> {
+        leading(&WorldOmega::<&B>::new(&self.scene), end_s, self.scene.info().time_scale_s)
     }
     fn any_motion(&self) -> AnyMotion<'_> {
         <B as RigidBody<f64>>::Position::erase(&self.scene)

@@ -33,14 +33,15 @@ pub struct Errors {
     pub rounding_end: Option<f64>,
     /// Largest such distance at the checkpoints.
     pub rounding_max: Option<f64>,
-    /// Size of the quantity at the end of the exact motion, in the same unit.
+    /// Largest size of the quantity along the exact motion, in the same unit: a motion that has died away is judged by what it
+    /// was.
     pub scale: f64,
 }
 
 impl Truth {
-    /// Evaluates the exact motion of a scene at the checkpoints up to its horizon.
-    pub fn of(scene: &dyn AnyScene) -> Self {
-        Self::up_to(scene, scene.scene().info().horizon_s, CHECKPOINTS)
+    /// Evaluates the exact motion of a scene at the checkpoints up to `end_s`.
+    pub fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
+        Self::up_to(scene, end_s, CHECKPOINTS)
     }
 
     /// Evaluates the exact motion of a scene at k T / `looks`.
@@ -89,7 +90,7 @@ impl Truth {
             max: if finished { errors.get(&quantity).copied() } else { None },
             rounding_end: pick(&rounding_end, quantity),
             rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
-            scale: last.scale(quantity),
+            scale: self.looks.iter().map(|look| look.scale(quantity)).fold(last.scale(quantity), f64::max),
         };
         last.values.iter().map(of).collect()
     }
@@ -100,9 +101,15 @@ pub fn stride(steps: u64) -> u64 {
     (steps / CHECKPOINTS).max(1)
 }
 
-/// Runs a scene up to its horizon, observed where it is to be compared; `None` for a step that the scene cannot take.
-pub fn run(scene: &dyn AnyScene, scheme: impl Into<Scheme>, precision: Precision, steps: u64) -> Option<Trajectory> {
-    let run = Run::new(scheme, precision, scene.scene().info().horizon_s, steps);
+/// Runs a scene up to `end_s`, observed where it is to be compared; `None` for a step that the scene cannot take.
+pub fn run(
+    scene: &dyn AnyScene,
+    scheme: impl Into<Scheme>,
+    precision: Precision,
+    end_s: f64,
+    steps: u64,
+) -> Option<Trajectory> {
+    let run = Run::new(scheme, precision, end_s, steps);
     scene.run(&run, stride(steps))
 }
 

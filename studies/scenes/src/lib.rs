@@ -25,5 +25,6 @@ pub mod special;
 pub mod stepping;
 pub mod theory;
 pub mod timed;
+pub mod variation;
 
 pub use catalogue::*;

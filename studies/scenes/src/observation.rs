@@ -173,8 +173,8 @@ pub fn norm(components: impl Iterator<Item = fx128> + Clone) -> fx128 {
     if largest == 0.0 || !largest.is_finite() {
         return fx128::from_f64(largest);
     }
-    // A power of two: scaling by it does not round.
-    let scale = fx128::lit(2.0_f64.powi(largest.log2().floor() as i32));
+    // A power of two: scaling by it does not round. Its inverse is finite, also for denormal numbers.
+    let scale = fx128::lit(2.0_f64.powi(largest.log2().floor().max(-1000.0) as i32));
     let sum = components.fold(fx128::ZERO, |sum, x| {
         let y = x / scale;
         sum + y * y
@@ -182,7 +182,8 @@ pub fn norm(components: impl Iterator<Item = fx128> + Clone) -> fx128 {
     sum.sqrt() * scale
 }
 
-fn distance(a: &Value, b: &Value) -> f64 {
+/// |a - b| of two vectors, the angle between two attitudes; NaN for a vector and an attitude.
+pub fn distance(a: &Value, b: &Value) -> f64 {
     match (a, b) {
         (Value::Vector(a), Value::Vector(b)) => {
             norm(a.iter().zip(b).map(|(&x, &y)| x - y).collect::<Vec<_>>().into_iter()).to_f64()

@@ -162,45 +162,52 @@ pub type AnyBody<'a, T, P> = &'a (dyn RigidBody<T, Position = P> + 'a);
 pub(crate) fn run_flat<T: Single, Q: Space<Scalar = T>>(
     motion: AnyFlat<'_, T, Q>,
     run: &Run,
-    stride: u64,
+    shown: Shown<'_>,
 ) -> Option<Trajectory> {
     let Rule::General(method) = run.scheme.rule else { return None };
     let counted = Counted::new(motion);
-    let samples = method.visit(Flat { model: &counted, motion, schedule: Schedule::of(run, stride) });
+    let samples = method.visit(Flat { model: &counted, motion, run, shown });
     Some(samples.trajectory(method.is_implicit(), counted.evaluations()))
 }
 
 struct Flat<'a, T: Single, Q: Space<Scalar = T>> {
     model: &'a Counted<AnyFlat<'a, T, Q>>,
     motion: AnyFlat<'a, T, Q>,
-    schedule: Schedule,
+    run: &'a Run,
+    shown: Shown<'a>,
 }
 
 impl<'a, T: Single, Q: Space<Scalar = T>> Visitor<T, Counted<AnyFlat<'a, T, Q>>> for Flat<'a, T, Q> {
     type Output = Samples;
 
     fn visit<A: Method<T, Counted<AnyFlat<'a, T, Q>>>>(self, method: &A) -> Samples {
-        self.schedule.drive(method, self.model, self.motion.exact(T::lit(0.0)), |s| self.motion.observe(s))
+        let start = self.motion.exact(T::lit(0.0));
+        self.shown.drive(self.run, method, self.model, start, |s| self.motion.observe(s))
     }
 }
 
 /// Where a rigid body may be, in the arithmetic `T`: [`Fixed`] or a [`Vector3`].
 pub trait Place<T: Single>: Vector<T> {
     /// Runs a body of which only the kind of its position is known.
-    fn run(body: AnyBody<'_, T, Self>, start: Kinematics<T, Self>, run: &Run, stride: u64) -> Trajectory;
+    fn run(body: AnyBody<'_, T, Self>, start: Kinematics<T, Self>, run: &Run, stride: u64) -> Trajectory {
+        Self::show(body, start, run, Shown::Every(stride))
+    }
+
+    /// The same, showing of it what is asked for.
+    fn show(body: AnyBody<'_, T, Self>, start: Kinematics<T, Self>, run: &Run, shown: Shown<'_>) -> Trajectory;
 }
 
 // Not generic, so that it is compiled once and not in every crate that runs a body.
 macro_rules! place {
     ($($t:ty),*) => {$(
         impl Place<$t> for Fixed<$t> {
-            fn run(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, stride: u64) -> Trajectory {
-                run_body(body, start, run, stride)
+            fn show(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, shown: Shown<'_>) -> Trajectory {
+                run_body(body, start, run, shown)
             }
         }
         impl Place<$t> for Vector3<$t> {
-            fn run(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, stride: u64) -> Trajectory {
-                run_body(body, start, run, stride)
+            fn show(body: AnyBody<'_, $t, Self>, start: Kinematics<$t, Self>, run: &Run, shown: Shown<'_>) -> Trajectory {
+                run_body(body, start, run, shown)
             }
         }
     )*};
@@ -211,22 +218,21 @@ fn run_body<T: Single, P: Vector<T>>(
     body: AnyBody<'_, T, P>,
     start: Kinematics<T, P>,
     run: &Run,
-    stride: u64,
+    shown: Shown<'_>,
 ) -> Trajectory {
     let counted = Counted::new(body);
-    let schedule = Schedule::of(run, stride);
     let Scheme { rule, storage, update } = run.scheme;
     let method = match rule {
         Rule::General(method) => method,
         Rule::Rigid(step) => {
-            let samples = step.visit::<T, _, _>(update, &counted, Turn { start, schedule });
+            let samples = step.visit::<T, _, _>(update, &counted, Turn { start, run, shown });
             return samples.trajectory(false, counted.evaluations());
         }
     };
     macro_rules! with {
         ($model:ident, $update:ident<$frame:ident>) => {{
             let model = $model::<_, $update<$frame>>::new(&counted);
-            method.visit(Turning { model: &model, start, schedule })
+            method.visit(Turning { model: &model, start, run, shown })
         }};
     }
     use AttitudeUpdate as U;
@@ -247,28 +253,61 @@ fn run_body<T: Single, P: Vector<T>>(
 struct Turning<'a, T: Single, M: RigidModel<T>> {
     model: &'a M,
     start: Kinematics<T, <M::Body as RigidBody<T>>::Position>,
-    schedule: Schedule,
+    run: &'a Run,
+    shown: Shown<'a>,
 }
 
 impl<T: Single, M: RigidModel<T>> Visitor<T, M> for Turning<'_, T, M> {
     type Output = Samples;
 
     fn visit<A: Method<T, M>>(self, method: &A) -> Samples {
-        self.schedule.drive(method, self.model, self.model.state(&self.start), |s| Observation::of_body(self.model, s))
+        let start = self.model.state(&self.start);
+        self.shown.drive(self.run, method, self.model, start, |s| Observation::of_body(self.model, s))
     }
 }
 
 /// A rigid body whose model the step chooses.
-struct Turn<T: Single, P> {
+struct Turn<'a, T: Single, P> {
     start: Kinematics<T, P>,
-    schedule: Schedule,
+    run: &'a Run,
+    shown: Shown<'a>,
 }
 
-impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<T, B::Position> {
+impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<'_, T, B::Position> {
     type Output = Samples;
 
     fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Samples {
-        self.schedule.drive(method, model, model.state(&self.start), |s| Observation::of_body(model, s))
+        let start = model.state(&self.start);
+        self.shown.drive(self.run, method, model, start, |s| Observation::of_body(model, s))
+    }
+}
+
+/// What is seen of a run.
+#[derive(Clone, Copy)]
+pub enum Shown<'a> {
+    /// Samples are kept: every multiple of so many steps, and the end.
+    Every(u64),
+    /// Every step is shown to this, with its number, and none is kept: for maxima over runs that are too long to be kept.
+    To(&'a dyn Fn(u64, Observation)),
+}
+
+impl Shown<'_> {
+    fn drive<T: Single, M: Model<T>, A: Method<T, M>>(
+        self,
+        run: &Run,
+        method: &A,
+        model: &M,
+        start: State<M::Config>,
+        observe: impl Fn(&State<M::Config>) -> Observation,
+    ) -> Samples {
+        match self {
+            Shown::Every(stride) => Schedule::of(run, stride).drive(method, model, start, observe),
+            Shown::To(watch) => {
+                let h = T::lit(run.end_s) / T::lit(run.steps as f64);
+                let result = drive::integrate(method, model, start, h, run.steps, |i, s| watch(i, observe(s)));
+                Samples { seen: Vec::new(), failed_step: result.err().map(|failure| failure.step) }
+            }
+        }
     }
 }
 

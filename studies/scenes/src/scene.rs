@@ -22,7 +22,7 @@ pub struct Info {
     pub source: &'static str,
     /// End of an error run, s: dyadic, and neither a period nor half of one.
     pub horizon_s: f64,
-    /// Natural time scale, s: 1/omega, 1/k, ...
+    /// Natural time scale, s, positive and finite: 1/omega, 1/k, ...
     pub time_scale_s: f64,
     /// Steps of the coarsest run of a sweep, a power of two.
     pub coarsest_steps: u64,
@@ -44,9 +44,15 @@ pub trait Scene: Parameters + Any + Send + Sync {
     /// Energy and momenta of an observed state.
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry>;
 
-    /// Times up to the horizon at which the exact motion is not smooth: bounces, kinks of the force.
-    fn breaks_s(&self) -> Vec<f64> {
+    /// Times up to `end_s` at which the exact motion is not smooth: bounces, kinks of the force.
+    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
+        let _ = end_s;
         Vec::new()
+    }
+
+    /// Up to when the exact motion is known, s.
+    fn ends_s(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// Whether the motion goes round or to and fro, with 2 pi times the time scale as its period.
@@ -65,14 +71,9 @@ pub trait Scene: Parameters + Any + Send + Sync {
         false
     }
 
-    /// Whether omega x I omega vanishes along the whole motion of a rigid body: the model without it is then right.
-    fn gyroscopic_term_vanishes(&self) -> bool {
-        self.turns_about_one_axis()
-    }
-
-    /// What theory says of a method's error in a quantity at the horizon.
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let _ = quantity;
+    /// What theory says of a method's error in a quantity at the time `end_s`.
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        let _ = (quantity, end_s);
         Theory::usual(method)
     }
 
@@ -91,9 +92,13 @@ pub trait Scene: Parameters + Any + Send + Sync {
 
 /// What is known beforehand of a method: the scene's theory where it was worked out for the method, else nothing.
 impl dyn Scene + '_ {
-    /// The error in a quantity at the horizon. The order of a method without theory is a least one.
-    pub fn expected_error(&self, method: MethodId, quantity: Quantity) -> Theory {
-        if method.facts().worked_out { self.theory(method, quantity) } else { Theory::least(method) }
+    /// The error in a quantity at the time `end_s`. The order of a method without theory is a least one.
+    pub fn expected_error(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        if method.facts().worked_out {
+            self.theory(method, quantity, end_s)
+        } else {
+            Theory::least(method, self.breaks_s(end_s).is_empty())
+        }
     }
 
     /// The growth of the error of a balance over a long run with the step `h_s`.
@@ -105,4 +110,42 @@ impl dyn Scene + '_ {
     pub fn expected_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
         method.facts().worked_out.then(|| self.stability_limit(method))?
     }
+}
+
+/// How long a motion is followed, and how finely at first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// End of an error run, s.
+    pub horizon_s: f64,
+    /// Steps of the coarsest run of a sweep.
+    pub coarsest_steps: u64,
+}
+
+/// A motion is followed for at most this many times as much of itself as the default one, and for at least that part of it.
+const LONGEST: f64 = 8.0;
+const SHORTEST: f64 = 1.0 / 128.0;
+/// The coarsest step may be this many times as long, in the motion's own time, as that of the default.
+const COARSEST: f64 = 5.0;
+
+impl Pace {
+    /// The same for a motion that is `faster` times as fast. The horizon changes by powers of two, and only where the motion
+    /// would be over, or would not have begun: it stays dyadic, and is that of the default wherever it can be.
+    #[must_use]
+    pub fn at(self, faster: f64) -> Self {
+        if !(faster > 0.0 && faster.is_finite()) {
+            return self;
+        }
+        let halvings = (faster / LONGEST).log2().ceil().max(0.0) + (faster / SHORTEST).log2().floor().min(0.0);
+        let left = faster / halvings.exp2();
+        Pace {
+            horizon_s: self.horizon_s / halvings.exp2(),
+            coarsest_steps: self.coarsest_steps << (left / COARSEST).log2().ceil().max(0.0) as u32,
+        }
+    }
+}
+
+/// The time scale of a motion with this rate, s; 1 s for one that does nothing.
+pub(crate) fn time_scale(rate: f64) -> f64 {
+    let scale_s = 1.0 / rate;
+    if scale_s > 0.0 && scale_s.is_finite() { scale_s } else { 1.0 }
 }

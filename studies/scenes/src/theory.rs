@@ -47,8 +47,11 @@ impl fmt::Display for Law {
 pub struct Theory {
     /// The order of convergence at the horizon.
     pub order: ExpectedOrder,
-    /// lim error(T) / h^order, in the quantity's unit / s^order, where known.
+    /// lim error(T) / h^order, in the quantity's unit / s^order, where known. Zero where the leading term vanishes: the order
+    /// is then one higher, or more.
     pub constant: Option<f64>,
+    /// How far the constant may be off by the rounding of its formula.
+    pub doubt: f64,
     /// Where it comes from, or why it is not the method's own order.
     pub reason: &'static str,
 }
@@ -71,30 +74,38 @@ impl Theory {
         Theory {
             order: ExpectedOrder::Of(f64::from(method.order())),
             constant: None,
+            doubt: 0.0,
             reason: "the method's order on a smooth problem",
         }
     }
 
-    /// What holds of a method that no theory was worked out for: the smallest of its orders, or a higher one.
-    pub fn least(method: MethodId) -> Self {
+    /// What holds of a method that no theory was worked out for: the smallest of its orders, or a higher one; where the motion is
+    /// not smooth, the first.
+    pub fn least(method: MethodId, is_smooth: bool) -> Self {
         let facts = method.facts();
-        let others = [facts.order_with_velocity, facts.order_on_rotations];
+        let others = [facts.order_with_velocity, facts.order_on_rotations, (!is_smooth).then_some(1)];
         let least = others.into_iter().flatten().fold(facts.order, u32::min);
         Theory {
             order: ExpectedOrder::Of(f64::from(least)),
-            constant: None,
             reason: "the least order that the method states; nothing else is known",
+            ..Self::usual(method)
         }
     }
 
     /// No error but rounding.
     pub fn exact(reason: &'static str) -> Self {
-        Theory { order: ExpectedOrder::Exact, constant: None, reason }
+        Theory { order: ExpectedOrder::Exact, constant: None, doubt: 0.0, reason }
     }
 
-    /// The usual order with a known error constant; a constant of zero would mean a higher order.
+    /// The usual order with a known error constant; zero means a higher order.
     pub fn with_constant(method: MethodId, constant: f64, reason: &'static str) -> Self {
         Theory { constant: Some(constant.abs()), reason, ..Self::usual(method) }
+    }
+
+    /// The same with a constant whose formula is rounded by up to `doubt`.
+    #[must_use]
+    pub fn give_or_take(self, doubt: f64) -> Self {
+        Theory { doubt, ..self }
     }
 }
 
@@ -103,6 +114,8 @@ impl Theory {
 pub struct ExpectedGrowth {
     /// The law.
     pub law: Law,
+    /// The length of a run from which on the law is to be seen, s.
+    pub seen_after_s: f64,
     /// For a bounded law the bounds of value / start, for an exponential one its rate in 1/s twice.
     pub bounds: Option<[f64; 2]>,
     /// Where it comes from.

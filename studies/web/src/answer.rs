@@ -133,7 +133,7 @@ impl Loaded {
     /// where there is none, or where it was not asked for.
     fn errors(&mut self, question: &Question) -> Result<Vec<f64>, Error> {
         let scene = self.scene.as_ref();
-        let truth = self.truth.get_or_insert_with(|| Truth::of(scene));
+        let truth = self.truth.get_or_insert_with(|| Truth::of(scene, scene.scene().info().horizon_s));
         let stride = if question.checkpoints { errors::stride(question.steps) } else { question.steps };
         let end_s = scene.scene().info().horizon_s;
         let run = |precision| trajectory(scene, &Question { end_s, stride, precision, ..question.clone() });

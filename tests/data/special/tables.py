@@ -119,21 +119,6 @@ def kepler():
     write("kepler", "mean_anomaly,e,eccentric_anomaly", rows)
 
 
-def kummer():
-    rows = []
-    for i in range(40):
-        a = (random.uniform(-1, 1), random.uniform(-2, 2)) if i % 2 else (random.choice([0.0, 0.5]), random.uniform(0.05, 2))
-        b = random.choice([0.5, 1.5, 2.25])
-        size = [random.uniform(0, 10), random.uniform(5.9, 6.1), random.uniform(10, 60), random.uniform(60, 300)][i % 4]
-        z = (0.0, random.choice([-size, size])) if i % 3 else (random.uniform(-size, size) / 3, random.uniform(-size, size) / 2)
-        za, zz = mpc(*a), mpc(*z)
-        mp.dps = 80 + int(size)
-        w, dw = M.hyp1f1(za, b, zz), za / b * M.hyp1f1(za + 1, b + 1, zz)
-        rows.append((a[0], a[1], b, z[0], z[1], w.real, w.imag, dw.real, dw.imag))
-    mp.dps = 80
-    write("kummer", "a_re,a_im,b,z_re,z_im,value_re,value_im,derivative_re,derivative_im", rows)
-
-
 def arithmetic():
     random.seed(2)
     rows = []
@@ -151,5 +136,5 @@ def arithmetic():
     write("arithmetic", "function,x,y,value", rows)
 
 
-for table in (elementary, carlson, elliptic, jacobi, kepler, kummer, arithmetic):
+for table in (elementary, carlson, elliptic, jacobi, kepler, arithmetic):
     table()

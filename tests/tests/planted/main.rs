@@ -137,22 +137,25 @@ impl Baseline {
             methods: vec![method],
             precisions: Precision::ALL.to_vec(),
             steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
+            end_s: None,
             quick: true,
             progress: Progress::silent(),
         };
         let rows = Convergence::measure(&selection);
         let scene = by_id();
+        let end_s = scene.scene().info().horizon_s;
         let reference = |row: &Row| {
             (
                 row.steps,
-                errors::run(scene.as_ref(), method, Precision::DoubleDouble, row.steps).expect("a general method"),
+                errors::run(scene.as_ref(), method, Precision::DoubleDouble, end_s, row.steps)
+                    .expect("a general method"),
             )
         };
         let mut references = BTreeMap::new();
         for row in &rows {
             references.entry(row.steps).or_insert_with(|| reference(row).1);
         }
-        Baseline { truth: Truth::of(scene.as_ref()), rows, references, scene }
+        Baseline { truth: Truth::of(scene.as_ref(), end_s), rows, references, scene }
     }
 
     /// The claims that are broken with the candidate's runs in the place of those in f64.

@@ -71,7 +71,8 @@ impl Maker<'_> {
     }
 
     pub(super) fn constant(&self, quantity: Quantity) -> Option<Row> {
-        let Theory { order: ExpectedOrder::Of(p), constant, reason } = self.theory(Subject::Error(quantity))? else {
+        let Theory { order: ExpectedOrder::Of(p), constant, reason, .. } = self.theory(Subject::Error(quantity))?
+        else {
             return None;
         };
         let c = constant.filter(|c| *c > 0.0)?;

@@ -119,7 +119,7 @@ impl Maker<'_> {
 
     fn theory(&self, quantity: Subject) -> Option<Theory> {
         let Subject::Error(quantity) = quantity else { return None };
-        Some(self.scene.scene().expected_error(self.stepper.of_theory()?, quantity))
+        Some(self.scene.scene().expected_error(self.stepper.of_theory()?, quantity, self.horizon()))
     }
 
     fn horizon(&self) -> f64 {

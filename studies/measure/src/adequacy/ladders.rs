@@ -1,10 +1,12 @@
 //! For each scene a ladder of models, from the least that one might get away with to the full one.
 
+use std::any::Any;
+
 use faer::fx128;
 use integrator::counted::Counted;
 use integrator::methods::{MethodId, Rk4, SemiImplicitEuler, VelocityVerlet};
 use integrator::pose::Fixed;
-use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, RigidModel, WithoutGyroscopicTerm};
+use integrator::rigid_body::{BodyOmega, Kinematics, RigidBody, RigidModel, Torque, WithoutGyroscopicTerm};
 use integrator::{Model, Real, Rotation, State, Vector, drive};
 use nalgebra::{Vector1, Vector2, Vector3};
 
@@ -13,6 +15,7 @@ use crate::operations::{Counting, Lift};
 use scenes::any::AnyScene;
 use scenes::motion::{Motion, RigidMotion};
 use scenes::observation::{Observation, Quantity};
+use scenes::scene::Scene;
 use scenes::{
     BoxTumbling, HeavyTop, Kepler, LinearDrag, Pendulum, PrincipalAxisTorque, QuadraticDrag, SphereTorque,
     TorqueFreeSpin,
@@ -131,7 +134,15 @@ impl<T: Real> Model<T> for SmallAngle {
 fn one_angle<B: RigidMotion<f64>>(body: &B, acceleration: f64, consistent: bool) -> Rung {
     let at = body.exact(0.0);
     let rate = at.omega_body.norm();
-    let axis = (at.omega_body / rate).map(fx128::lit);
+    // A body at rest begins to turn about the axis of its torque.
+    let begins = match body.torque(0.0, &at) {
+        Torque::World(torque) => at.attitude.rotate_back(torque),
+        Torque::Body(torque) => torque,
+        Torque::None => Vector3::z(),
+    };
+    let along = if rate > 0.0 { at.omega_body } else { begins };
+    let axis = (along / along.norm().max(f64::MIN_POSITIVE)).map(fx128::lit);
+    let acceleration = if rate > 0.0 { acceleration } else { acceleration.abs() };
     let attitude = Rotation { w: fx128::lit(at.attitude.w), v: at.attitude.v.map(fx128::lit) };
     let start = State { q: Vector1::new(0.0), v: Vector1::new(rate) };
     rung("one angle instead of an attitude", consistent, OneAngle { acceleration }, start, move |s| {
@@ -177,36 +188,65 @@ fn ladder(name: &'static str, scene: Box<dyn AnyScene>, quantity: Quantity, rung
     Ladder { scene, name, quantity, rungs }
 }
 
-/// Every ladder, on the scenes' default parameters.
-pub fn all() -> Vec<Ladder> {
-    let mut all = rotations();
-    all.extend(translations());
-    all.extend([pendulum("pendulum", Pendulum::default(), false)]);
+/// Every ladder, with the parameters of the first of `scenes` that is its own, or the default ones.
+pub fn all(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
+    let mut all = rotations(scenes);
+    all.extend(translations(scenes));
+    let swing: Pendulum = own(scenes, "pendulum");
     // A swing of a thousandth of a radian: what the small angle leaves out is a part in 10^7 of it.
-    let small = Pendulum { angle: 1e-3, omega: 1e-3, ..Pendulum::default() };
+    let small = Pendulum { angle: 1e-3, omega: 1e-3, ..swing.clone() };
+    let at_rest = swing.angle == 0.0 && swing.omega == 0.0;
+    all.extend([pendulum("pendulum", swing, at_rest)]);
     all.extend([pendulum("pendulum-1-mrad", small, false)]);
     all
 }
 
-fn rotations() -> Vec<Ladder> {
+/// The scene of that name, of whatever preset.
+fn own<S: Scene + Default + Clone>(scenes: &[Box<dyn AnyScene>], base: &str) -> S {
+    let of_base = scenes.iter().filter(|scene| scene.id().split('/').next() == Some(base));
+    let as_own = |scene: &Box<dyn AnyScene>| (scene.scene() as &dyn Any).downcast_ref::<S>().cloned();
+    of_base.filter_map(as_own).next().unwrap_or_default()
+}
+
+/// Whether omega x I omega vanishes along the exact motion of a body: nothing is lost without it.
+fn keeps_its_axis<B: RigidMotion<f64> + Scene>(body: &B) -> bool {
+    let (i, end_s) = (RigidBody::<f64>::inertia(body), body.info().horizon_s);
+    (0..=32).all(|k| {
+        let w = body.exact(end_s * f64::from(k) / 32.0).omega_body;
+        let turned = [(i.z - i.y) * w.y * w.z, (i.x - i.z) * w.z * w.x, (i.y - i.x) * w.x * w.y];
+        Vector3::from(turned).component_div(&i).norm() * end_s * end_s <= UNSEEN
+    })
+}
+
+/// A turn that no run in f64 shows, rad.
+const UNSEEN: f64 = 1e-13;
+
+fn rotations(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
     let attitude = Quantity::Attitude;
-    let free = TorqueFreeSpin::default();
-    let top = HeavyTop::default();
+    let free: TorqueFreeSpin = own(scenes, "torque-free-spin");
+    let top: HeavyTop = own(scenes, "heavy-top");
+    let [steady, top_steady] = [keeps_its_axis(&free), keeps_its_axis(&top)];
+    let upright = top_steady && scenes_still(&top);
+    let round_is_right = top.inertia_1 == top.inertia_3 || top.omega[2] == 0.0 || upright;
     let round_top = HeavyTop { inertia_3: top.inertia_1, ..top.clone() };
-    let spun = PrincipalAxisTorque::default();
-    let sphere = SphereTorque::default();
-    let boxed = BoxTumbling::default();
-    let acceleration = spun.torque / spun.inertia[spun.axis as usize];
-    let rungs = vec![one_angle(&free, 0.0, false), no_gyroscopic_term!(free, false), full!(free)];
+    let spun: PrincipalAxisTorque = own(scenes, "principal-axis-torque");
+    let sphere: SphereTorque = own(scenes, "sphere-torque");
+    let boxed: BoxTumbling = own(scenes, "box-tumbling");
+    let box_steady = keeps_its_axis(&boxed);
+    // Along the axis of the spin; a body at rest starts about that of the torque.
+    let sense = if spun.omega < 0.0 { -1.0 } else { 1.0 };
+    let acceleration = spun.torque / spun.inertia[spun.axis as usize] * sense;
+    let rungs = vec![one_angle(&free, 0.0, steady), no_gyroscopic_term!(free, steady), full!(free)];
     let of_free = ladder("torque-free-spin", scenes::boxed("torque-free-spin", free), attitude, rungs);
-    let round = rigid(SPHERE, false, BodyOmega::<_>::new(round_top), &top);
-    let rungs = vec![one_angle(&top, 0.0, false), round, no_gyroscopic_term!(top, false), full!(top)];
+    let round = rigid(SPHERE, round_is_right, BodyOmega::<_>::new(round_top), &top);
+    let rungs = vec![one_angle(&top, 0.0, upright), round, no_gyroscopic_term!(top, top_steady), full!(top)];
     let of_top = ladder("heavy-top", scenes::boxed("heavy-top", top), attitude, rungs);
     let rungs = vec![one_angle(&spun, acceleration, true), no_gyroscopic_term!(spun, true), full!(spun)];
     let of_spun = ladder("principal-axis-torque", scenes::boxed("principal-axis-torque", spun), attitude, rungs);
-    let rungs = vec![one_angle(&sphere, 0.0, false), no_gyroscopic_term!(sphere, true), full!(sphere)];
+    let rungs =
+        vec![one_angle(&sphere, 0.0, sphere.torque == [0.0; 3]), no_gyroscopic_term!(sphere, true), full!(sphere)];
     let of_sphere = ladder("sphere-torque", scenes::boxed("sphere-torque", sphere), attitude, rungs);
-    let rungs = vec![no_gyroscopic_term!(boxed, false), full!(boxed)];
+    let rungs = vec![no_gyroscopic_term!(boxed, box_steady), full!(boxed)];
     let of_box = ladder("box-tumbling attitude", scenes::boxed("box-tumbling", boxed.clone()), attitude, rungs);
     let start = State { q: Vector3::from(boxed.x0), v: Vector3::from(boxed.v0) };
     let point = rung("translation only", true, Fall { gravity: boxed.gravity }, start, Observation::particles);
@@ -215,9 +255,23 @@ fn rotations() -> Vec<Ladder> {
     vec![of_free, of_top, of_spun, of_sphere, of_box, of_point]
 }
 
-fn translations() -> Vec<Ladder> {
+/// Whether the axis of a top stands still.
+fn scenes_still(top: &HeavyTop) -> bool {
+    let end_s = top.info().horizon_s;
+    let up = |t: f64| {
+        let at: Kinematics<f64, Fixed<f64>> = top.exact(t);
+        at.attitude.rotate_back(Vector3::new(0.0, 0.0, 1.0))
+    };
+    let start = up(0.0);
+    (0..=32).all(|k| up(end_s * f64::from(k) / 32.0).z.abs() >= 1.0 - f64::EPSILON)
+        && start.z.abs() >= 1.0 - f64::EPSILON
+}
+
+fn translations(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
     let position = Quantity::Position;
-    let (linear, quadratic, planet) = (LinearDrag::default(), QuadraticDrag::default(), Kepler::default());
+    let linear: LinearDrag = own(scenes, "linear-drag");
+    let quadratic: QuadraticDrag = own(scenes, "quadratic-drag");
+    let planet: Kepler = own(scenes, "kepler");
     let start = Motion::<f64>::exact(&linear, 0.0);
     let fall = rung("no drag", false, Fall { gravity: linear.gravity }, start, Observation::particles);
     let full = rung(FULL, true, linear.clone(), start, Observation::particles);

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{Row, Seen, rungs};
 use crate::error::Error;
-use crate::study::{Derived, command, distinct, short};
+use crate::study::{Derived, distinct, short};
 use scenes::run::Outcome;
 
 /// Error levels of the recommendations, in the unit of the quantity.
@@ -189,7 +189,7 @@ fn figure(rows: &[Row], scene: &str) -> Figure {
         x: Axis::log("operations of the run (1)"),
         y: Axis::log(format!("{quantity} error at the end ({unit})")),
         layers,
-        command: command("adequacy", super::base(scene)),
+        scene: Some(super::base(scene).to_owned()),
         data: "adequacy.csv".to_owned(),
         ..Figure::default()
     }

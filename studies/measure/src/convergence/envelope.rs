@@ -27,7 +27,8 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
     let span = samples.first().zip(samples.get(middle)).map_or(1.0, |(a, b)| (a.h_s / b.h_s).ln());
     // Rounding fills the fine end of a sweep in f32 and f64; the claims are made in double-double.
     let halves = coarse_top / fine_top;
-    let holds = (1.0 / HALVES_DIFFER..=HALVES_DIFFER).contains(&halves);
+    let exact = samples.iter().all(|s| s.error.is_some_and(|e| e <= 64.0 * first.precision.epsilon() * first.scale));
+    let holds = (1.0 / HALVES_DIFFER..=HALVES_DIFFER).contains(&halves) || exact;
     OrderRow {
         scene: first.scene.clone(),
         method: first.method.clone(),
@@ -45,7 +46,15 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
         window_points: Some(fine.len()),
         constant: Some(fine_top).filter(|x| x.is_finite()),
         constant_change: None,
+        coarse_constant: coarse_top,
         theory_constant: if measure == Measure::End { first.theory_constant } else { None },
+        theory_doubt: first.theory_doubt,
+        leading: None,
+        leading_doubt: None,
+        finest_order: None,
+        is_rounding: false,
+        coarsest_failure_h_s: None,
+        time_scale_s: first.time_scale_s,
         floor: None,
         unit: first.unit.clone(),
         verdict: if holds { Verdict::AsExpected } else { Verdict::NotAsymptotic },
@@ -67,7 +76,12 @@ pub(super) fn envelope_claim(o: &OrderRow) -> Option<Claim> {
         o.constant.map_or_else(|| "a run failed".to_owned(), |x| format!("largest of the finer half {x:.6e}")),
         format!("between {REACHED} and 1 + {NEXT_TERMS} of it"),
     ];
-    let evidence = Evidence::within(o.constant, [bound * REACHED, bound * (1.0 + NEXT_TERMS)]);
+    let evidence = match o.constant {
+        // A sweep in which no event fell badly, or a run failed, shows nothing of the bound.
+        None => Evidence::Undecided,
+        Some(largest) if largest < bound * REACHED => Evidence::Undecided,
+        largest => Evidence::within(largest, [bound * REACHED, bound * (1.0 + NEXT_TERMS)]),
+    };
     let id = format!("{}.{}.{}.envelope", o.scene, o.method, o.quantity.id());
-    Some(claim("convergence", &id, texts, [evidence]))
+    Some(claim("convergence", &id, texts, [evidence]).on(&o.scene).by(&o.method))
 }

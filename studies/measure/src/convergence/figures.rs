@@ -5,7 +5,7 @@ use reports::{Axis, Figure, Layer, Series};
 
 use super::Row;
 use crate::names::scene_title;
-use crate::study::{color_of, command, distinct};
+use crate::study::{color_of, distinct};
 use scenes::observation::Quantity;
 use scenes::run::{Outcome, Precision};
 
@@ -104,11 +104,14 @@ fn methods(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
         x,
         y,
         layers,
-        command: command("convergence", scene),
+        scene: Some(scene.to_owned()),
         data: "convergence.csv".to_owned(),
         ..Figure::default()
     }
 }
+
+/// The scene whose chart of three precisions is on the page; the others are linked.
+const PRECISIONS_ON_PAGE: &str = "torque-free-spin";
 
 fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
     let mut layers = Vec::new();
@@ -132,7 +135,8 @@ fn precisions(scene: &str, quantity: Quantity, rows: &[&Row]) -> Figure {
         x,
         y,
         layers,
-        command: command("convergence", scene),
+        scene: Some(scene.to_owned()),
+        on_page: scene == PRECISIONS_ON_PAGE,
         data: "convergence.csv".to_owned(),
         ..Figure::default()
     }

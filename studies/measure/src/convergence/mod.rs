@@ -2,9 +2,11 @@
 
 mod envelope;
 mod figures;
+mod limit;
 mod orders;
 mod rounding;
 
+pub use limit::{Limit, judge, limit};
 pub use orders::{Measure, OrderRow, orders, tolerance};
 
 use integrator::methods::MethodId;
@@ -20,6 +22,7 @@ use scenes::errors::{Errors, Truth};
 use scenes::observation::Quantity;
 use scenes::run::{Outcome, Precision, Trajectory, method_from_id};
 use scenes::theory::ExpectedOrder;
+use scenes::variation::Leading;
 
 /// Halvings of the step from the coarsest to the finest run.
 pub const HALVINGS: u32 = 12;
@@ -39,6 +42,8 @@ pub struct Row {
     pub steps: u64,
     /// Step, s.
     pub h_s: f64,
+    /// Natural time scale of the scene, s.
+    pub time_scale_s: f64,
     /// What was compared.
     pub quantity: Quantity,
     /// Unit of the errors.
@@ -55,7 +60,7 @@ pub struct Row {
     pub rounding_end: Option<f64>,
     /// Largest rounding error at the same times.
     pub rounding_max: Option<f64>,
-    /// Size of the quantity at the end of the exact motion, in the same unit.
+    /// Largest size of the quantity along the exact motion, in the same unit.
     pub scale: f64,
     /// Evaluations of the force law.
     pub evaluations: u64,
@@ -65,6 +70,14 @@ pub struct Row {
     pub theory_is_envelope: bool,
     /// lim error_end / h^order (or its bound) that theory predicts, where it does.
     pub theory_constant: Option<f64>,
+    /// How far it may be off by the rounding of its formula.
+    pub theory_doubt: f64,
+    /// The same limit by the equation of first variation, in double-double, for the methods whose local error it knows.
+    pub leading_end: Option<f64>,
+    /// That of error_max.
+    pub leading_max: Option<f64>,
+    /// How far both may be off.
+    pub leading_doubt: Option<f64>,
 }
 
 /// The study.
@@ -73,6 +86,7 @@ pub struct Convergence;
 impl Study for Convergence {
     type Row = Row;
     const ID: &'static str = "convergence";
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "for"];
     const ABOUT: &'static str = "Sweeps the step on scenes with exact solutions and measures the order of convergence";
     const EXAMPLES: &'static str = "convergence --scene oscillator --method rk4
         convergence --scene torque-free-spin --precision f64 --out /tmp/spin
@@ -92,9 +106,6 @@ impl Study for Convergence {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         figures::figures(rows)
     }
-    fn is_on_page(figure: &Figure) -> bool {
-        figure.id.starts_with("convergence-") || figure.id == "precision-torque-free-spin-attitude"
-    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         let mut claims = orders::claims(rows);
         claims.extend(rounding::claims(rows));
@@ -109,7 +120,7 @@ impl Study for Convergence {
 
 struct Job<'a> {
     scene: &'a dyn AnyScene,
-    truth: &'a Truth,
+    known: &'a Known,
     method: MethodId,
     steps: u64,
 }
@@ -117,15 +128,18 @@ struct Job<'a> {
 /// Runs every scene, method and step in every precision.
 fn measure(selection: &Selection) -> Vec<Row> {
     let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
-    let truths: Vec<Truth> =
-        in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| Truth::of(scene.as_ref()));
+    let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
+    let known = in_parallel(
+        &scenes,
+        |_| 1,
+        &crate::sweep::Progress::silent(),
+        |&scene| Known::of(scene, selection.end_s(scene)),
+    );
     let mut jobs = Vec::new();
-    for (scene, truth) in selection.scenes.iter().zip(&truths) {
+    for (&scene, known) in scenes.iter().zip(&known) {
         for &method in &selection.methods {
-            let halved = (0..=halvings).map(|k| scene.scene().info().coarsest_steps << k);
-            let all_steps = if selection.steps.is_empty() { halved.collect() } else { selection.steps.clone() };
-            for steps in all_steps {
-                jobs.push(Job { scene: scene.as_ref(), truth, method, steps });
+            for steps in selection.sweep(scene, 0..=halvings) {
+                jobs.push(Job { scene, known, method, steps });
             }
         }
     }
@@ -134,9 +148,25 @@ fn measure(selection: &Selection) -> Vec<Row> {
     rows.into_iter().flatten().collect()
 }
 
+/// What is known of a scene before it is run.
+struct Known {
+    end_s: f64,
+    truth: Truth,
+    leading: Vec<Leading>,
+}
+
+impl Known {
+    fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
+        // Where the motion is not smooth the error has another leading term.
+        let smooth = scene.scene().breaks_s(end_s).is_empty();
+        let leading = if smooth { scene.leading(end_s) } else { Vec::new() };
+        Known { end_s, truth: Truth::of(scene, end_s), leading }
+    }
+}
+
 impl Job<'_> {
     fn rows(&self, precisions: &[Precision]) -> Vec<Row> {
-        let run = |precision| errors::run(self.scene, self.method, precision, self.steps);
+        let run = |precision| errors::run(self.scene, self.method, precision, self.known.end_s, self.steps);
         let Some(reference) = run(Precision::DoubleDouble) else { return Vec::new() };
         let row = |&precision: &Precision| match precision {
             Precision::DoubleDouble => self.compare(precision, &reference, &reference),
@@ -147,13 +177,16 @@ impl Job<'_> {
 
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
         let row = |errors: Errors| {
-            let theory = self.scene.scene().expected_error(self.method, errors.quantity);
+            let theory = self.scene.scene().expected_error(self.method, errors.quantity, self.known.end_s);
+            let mut known = self.known.leading.iter();
+            let leading = known.find(|one| (one.method, one.quantity) == (self.method, errors.quantity));
             Row {
                 scene: self.scene.id().to_owned(),
                 method: self.method.id().to_owned(),
                 precision,
                 steps: self.steps,
-                h_s: self.scene.scene().info().horizon_s / self.steps as f64,
+                h_s: self.known.end_s / self.steps as f64,
+                time_scale_s: self.scene.scene().info().time_scale_s,
                 quantity: errors.quantity,
                 unit: errors.quantity.unit().to_owned(),
                 outcome: run.outcome,
@@ -170,8 +203,12 @@ impl Job<'_> {
                 },
                 theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
                 theory_constant: theory.constant,
+                theory_doubt: theory.doubt,
+                leading_end: leading.map(|one| one.end),
+                leading_max: leading.map(|one| one.max),
+                leading_doubt: leading.map(|one| one.doubt),
             }
         };
-        self.truth.compare(self.scene, self.steps, run, reference).into_iter().map(row).collect()
+        self.known.truth.compare(self.scene, self.steps, run, reference).into_iter().map(row).collect()
     }
 }

@@ -40,6 +40,10 @@ pub struct LawRow {
     pub decade_ratio: Option<f64>,
     /// The law that theory predicts, where it does.
     pub theory_law: Option<Law>,
+    /// The length of a run from which on that law is to be seen, s.
+    pub theory_seen_after_s: Option<f64>,
+    /// Length of the run, s.
+    pub length_s: f64,
     /// Low end of the band or rate that theory predicts.
     pub theory_low: Option<f64>,
     /// High end of the same.
@@ -76,7 +80,7 @@ fn law_of(run: &[Row]) -> LawRow {
         run.iter().filter_map(|row| Some((row.t_s, row.error_min?, row.error_max?))).collect();
     let envelope = growth::running_maximum(complete.iter().map(|&(t, low, high)| (t, low.abs().max(high.abs()))));
     // Rounding of the balance itself: a few units in its last place, gathered over a few thousand steps as a random walk.
-    let noise = 256.0 * first.precision.epsilon() * first.scale;
+    let noise = 256.0 * first.precision.epsilon() * first.scale.max(first.terms);
     let seen = growth::classify(&envelope, noise);
     let largest = envelope.last().map(|sample| sample.error);
     let extreme = |values: Vec<f64>, pick: fn(f64, f64) -> f64| values.into_iter().reduce(pick);
@@ -97,6 +101,8 @@ fn law_of(run: &[Row]) -> LawRow {
         rate_per_s: if wants_rate { growth::fit_exponential_rate(&relative).map(|line| line.slope) } else { None },
         decade_ratio: seen.decade_ratio,
         theory_law: first.theory_law,
+        theory_seen_after_s: first.theory_seen_after_s,
+        length_s: run.last().map_or(0.0, |row| row.t_s),
         theory_low: first.theory_low,
         theory_high: first.theory_high,
         ratio_low: extreme(complete.iter().map(|c| ratio(c.1)).collect(), f64::min),
@@ -176,14 +182,36 @@ fn judged(run: &[Row]) -> Option<Claim> {
             theory.to_string(),
             format!("{} ({})", row.law, row.evidence),
             "the same law".to_owned(),
-            // Where two laws fit alike, nothing was measured that could tell which.
-            vec![if row.law == Law::Unclassified { Evidence::Undecided } else { Evidence::is(row.law == theory) }],
+            vec![Evidence::is(row.law == theory || (theory, row.law) == (Law::Bounded, Law::AtTheFloor))],
         ),
     };
     let statement = format!("{} of {} on {} {statement}", row.drift.id(), row.method, row.scene);
     let id = format!("{}.{}.{}", row.scene, row.method, row.drift.id());
-    let evidence = evidence.into_iter().chain([Evidence::is(is_complete(run))]);
-    Some(claim("drift", &id, [statement, theory_text, measured, bound], evidence))
+    let numbers: Vec<f64> = match theory {
+        Law::Exponential => row.rate_per_s.into_iter().collect(),
+        _ => [row.ratio_low, row.ratio_high].into_iter().flatten().collect(),
+    };
+    let mut evidence: Vec<Evidence> = evidence.into_iter().chain([Evidence::is(is_complete(run))]).collect();
+    if evidence.contains(&Evidence::Outside) && is_open(row, theory) {
+        evidence = vec![Evidence::Undecided];
+    }
+    Some(
+        claim("drift", &id, [statement, theory_text, measured, bound], evidence)
+            .on(&row.scene)
+            .by(&row.method)
+            .with_numbers(numbers),
+    )
+}
+
+/// Whether a run cannot tell: the balance has no size to compare with; or two laws fit alike, the run is shorter than what the law
+/// needs to be seen, or nothing grew out of the rounding.
+fn is_open(row: &LawRow, theory: Law) -> bool {
+    let no_size = row.relative_error.is_none_or(|r| !r.is_finite()) && row.failed_at_s.is_none();
+    let unseen = row.theory_low.is_none()
+        && (row.law == Law::Unclassified
+            || row.theory_seen_after_s.is_some_and(|s| row.length_s < s)
+            || (row.law == Law::AtTheFloor && theory != Law::AtTheFloor));
+    no_size || unseen
 }
 
 /// The rate is the slope of ln(E / E0), whose oscillation within a period is (w h) / 2 at most over hundreds of periods.

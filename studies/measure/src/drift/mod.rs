@@ -16,7 +16,7 @@ use crate::study::{Derived, Selection, Study, check_method, check_scene, check_s
 use crate::sweep::{Progress, in_parallel};
 use scenes::any::AnyScene;
 use scenes::invariants::{Balance, Entry};
-use scenes::observation::{Observation, largest, norm};
+use scenes::observation::{Observation, Value, largest, norm};
 use scenes::run::{Outcome, Precision, Run, method_from_id};
 use scenes::theory::ExpectedGrowth;
 use scenes::theory::Law;
@@ -104,6 +104,8 @@ pub struct Row {
     pub unit: String,
     /// Size of the balance at the start, in the same unit; 1 for an angle and for the quaternion.
     pub scale: f64,
+    /// Size of the terms that the balance is a sum of, at most, in the same unit: what it is rounded by is a part of them.
+    pub terms: f64,
     /// End of the stretch, s.
     pub t_s: f64,
     /// Least error in the stretch.
@@ -116,6 +118,8 @@ pub struct Row {
     pub failed_at_s: Option<f64>,
     /// The law that theory predicts, where it does.
     pub theory_law: Option<Law>,
+    /// The length of a run from which on that law is to be seen, s.
+    pub theory_seen_after_s: Option<f64>,
     /// Low end of what theory predicts: (value / start) of a bounded law, rate in 1/s of an exponential one.
     pub theory_low: Option<f64>,
     /// High end of the same.
@@ -128,6 +132,7 @@ pub struct DriftStudy;
 impl Study for DriftStudy {
     type Row = Row;
     const ID: &'static str = "drift";
+    const HEEDS: &'static [&'static str] = &["precision", "for"];
     const ABOUT: &'static str =
         "Follows energy, momenta and the quaternion's norm over a long run and names the law of their growth";
     const EXAMPLES: &'static str = "drift --scene oscillator --method rk4
@@ -142,7 +147,12 @@ impl Study for DriftStudy {
         let (scales, observations) =
             if selection.quick { (QUICK_TIME_SCALES, QUICK_OBSERVATIONS) } else { (TIME_SCALES, OBSERVATIONS) };
         let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
-        let tracks = in_parallel(&scenes, |_| 1, &Progress::silent(), |&scene| Track::of(scene, scales, observations));
+        let tracks = in_parallel(
+            &scenes,
+            |_| 1,
+            &Progress::silent(),
+            |&scene| Track::of(scene, selection.end_s, scales, observations),
+        );
         let mut jobs = Vec::new();
         for track in &tracks {
             for &method in &selection.methods {
@@ -165,9 +175,6 @@ impl Study for DriftStudy {
     fn figures(rows: &[Row]) -> Vec<Figure> {
         show::figures(rows)
     }
-    fn is_on_page(figure: &Figure) -> bool {
-        figure.id.ends_with("-energy")
-    }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         laws::claims(rows)
     }
@@ -187,14 +194,18 @@ struct Track<'a> {
     stride: u64,
     /// One account, if all of it is conserved; else one for each observation.
     truth: Vec<Vec<Entry>>,
-    kinds: Vec<Drift>,
+    kinds: Vec<(Drift, f64)>,
 }
 
 impl<'a> Track<'a> {
-    fn of(scene: &'a dyn AnyScene, time_scales: f64, observations: u64) -> Self {
+    fn of(scene: &'a dyn AnyScene, end_s: Option<f64>, time_scales: f64, observations: u64) -> Self {
         // Dyadic, so that every precision takes the same step.
         let h_s = (scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
         let steps = time_scales as u64 * STEPS_A_TIME_SCALE;
+        let (h_s, steps) = end_s.map_or((h_s, steps), |end_s| {
+            let steps = (end_s / h_s / STRETCHES as f64).ceil().max(1.0) as u64 * STRETCHES;
+            (end_s / steps as f64, steps)
+        });
         let stride = (steps / STRETCHES / observations).max(1);
         let start = scene.exact(fx128::ZERO);
         let first = scene.scene().account(fx128::ZERO, &start);
@@ -204,7 +215,12 @@ impl<'a> Track<'a> {
         };
         let conserved = first.iter().all(|entry| entry.conserved);
         let norm = start.rotation().map(|_| Drift::QuaternionNorm);
-        let kinds = drifts(&first, &first).into_iter().map(|(drift, _)| drift).chain(norm).collect();
+        let kinds = drifts(&first, &first).into_iter().map(|(drift, _)| drift).chain(norm);
+        let seen: Vec<Vec<(Drift, f64)>> = (0..=LOOKS)
+            .map(|k| terms(scene, fx128::lit(steps as f64 * h_s) * fx128::lit(k as f64 / LOOKS as f64)))
+            .collect();
+        let largest = |drift| seen.iter().flatten().filter(|(d, _)| *d == drift).map(|(_, x)| *x).fold(0.0, f64::max);
+        let kinds = kinds.map(|drift| (drift, largest(drift))).collect();
         let truth = if conserved { vec![first] } else { (0..=steps / stride).map(|k| at(k * stride)).collect() };
         Track { scene, h_s, steps, stride, truth, kinds }
     }
@@ -227,7 +243,7 @@ impl<'a> Track<'a> {
             seen.map(|(step, seen)| (*step, self.errors(*step, seen))).collect();
         let failed_at_s = trajectory.failed_step.map(|step| step as f64 * self.h_s);
         let mut rows = Vec::new();
-        for (i, &drift) in self.kinds.iter().enumerate() {
+        for (i, &(drift, terms)) in self.kinds.iter().enumerate() {
             let theory = self.theory(method, drift);
             for stretch in 0..STRETCHES {
                 let [begin, end] = [stretch, stretch + 1].map(|k| self.steps * k / STRETCHES);
@@ -245,12 +261,14 @@ impl<'a> Track<'a> {
                     drift,
                     unit: drift.unit().to_owned(),
                     scale: scale(&self.truth[0], drift),
+                    terms,
                     t_s: end as f64 * self.h_s,
                     error_min: most(-1.0).map(|x| -x),
                     error_max: most(1.0),
                     outcome: trajectory.outcome,
                     failed_at_s,
                     theory_law: theory.map(|t| t.law),
+                    theory_seen_after_s: theory.map(|t| t.seen_after_s),
                     theory_low: theory.and_then(|t| t.bounds).map(|b| b[0]),
                     theory_high: theory.and_then(|t| t.bounds).map(|b| b[1]),
                 });
@@ -268,6 +286,47 @@ impl<'a> Track<'a> {
         };
         self.scene.scene().expected_growth(method, balance, self.h_s)
     }
+}
+
+/// Times at which the terms of the balances are looked at.
+const LOOKS: u64 = 16;
+
+/// Size of the terms of each balance on the exact motion: how much it changes for the relative change of each component of what is
+/// seen.
+fn terms(scene: &dyn AnyScene, t: fx128) -> Vec<(Drift, f64)> {
+    const CHANGE: f64 = 1.0 / 1_048_576.0;
+    let seen = scene.exact(t);
+    let at = |seen: &Observation| scene.scene().account(t, seen);
+    let own = at(&seen);
+    let mut sizes: Vec<(Drift, f64)> = drifts(&own, &own);
+    let mut add = |moved: &Observation| {
+        for (sum, (_, change)) in sizes.iter_mut().zip(drifts(&at(moved), &own)) {
+            sum.1 += change.abs() / CHANGE;
+        }
+    };
+    for (i, (quantity, value)) in seen.values.iter().enumerate() {
+        let mut moved = seen.clone();
+        match value {
+            Value::Vector(components) => {
+                for c in 0..components.len() {
+                    let mut other = components.clone();
+                    let change = other[c] * fx128::lit(CHANGE);
+                    other[c] += change;
+                    moved.values[i] = (*quantity, Value::Vector(other));
+                    add(&moved);
+                }
+            }
+            Value::Rotation(q) => {
+                for axis in 0..3 {
+                    let mut by = nalgebra::Vector3::from([fx128::ZERO; 3]);
+                    by[axis] = fx128::lit(CHANGE);
+                    moved.values[i] = (*quantity, Value::Rotation(integrator::Rotation::exp(by) * *q));
+                    add(&moved);
+                }
+            }
+        }
+    }
+    sizes
 }
 
 /// Errors of an account against the true one, scalars as they are, vectors by norm and direction.

@@ -5,7 +5,7 @@ use reports::{Axis, Figure, Layer, Series};
 
 use super::{Drift, Row};
 use crate::names::scene_title;
-use crate::study::{color_of, command, distinct};
+use crate::study::{color_of, distinct};
 use scenes::run::Precision;
 
 /// One chart for each scene and drift: the largest error so far, of every method in f64.
@@ -83,7 +83,8 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
         x: Axis::log("time (s)"),
         y: Axis::log(format!("largest {name} so far ({unit})")),
         layers,
-        command: command("drift", scene),
+        scene: Some(scene.to_owned()),
+        on_page: drift == Drift::Energy,
         data: "drift.csv".to_owned(),
         ..Figure::default()
     }

@@ -84,6 +84,7 @@ pub struct Ensemble;
 impl Study for Ensemble {
     type Row = Row;
     const ID: &'static str = "ensemble";
+    const HEEDS: &'static [&'static str] = &["precision", "steps"];
     const TITLE: &'static str = "How wrong is it, from anywhere? Ensembles";
     const INTRO: &'static str = "One start may be lucky. Here each scene is started from many states, drawn by its rule from a \
         seed, and its errors at the end are ranked: the median, the 95th percentile and the worst, and where the worst one started. \
@@ -209,7 +210,7 @@ fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: 
     let row = |quantity| {
         let of = |errors: &Errors| Some(errors.as_ref()?.iter().find(|(q, _)| *q == quantity)?.1);
         let ranked = Ranked::new(errors.iter().map(of));
-        let ExpectedOrder::Of(order) = scene.expected_error(method, quantity).order else {
+        let ExpectedOrder::Of(order) = scene.expected_error(method, quantity, scene.info().horizon_s).order else {
             return (quantity, ranked, None);
         };
         (quantity, ranked, Some(order))

@@ -146,6 +146,7 @@ fn figure(scene: &str, sweeps: &[Vec<&Row>]) -> Option<Figure> {
         x: Axis::log("step size h (s)"),
         y: Axis::log(format!("{} error at the end ({})", quantity.id(), quantity.unit())),
         layers,
+        scene: Some(scene.to_owned()),
         command: format!("cargo run --release --bin tradeoff -- --scene {scene} --ensemble {members} --seed {seed}"),
         data: "ensemble.csv".to_owned(),
         ..Figure::default()
@@ -195,5 +196,5 @@ fn claim(sweep: &[&Row], name: &str, pick: fn(&Row) -> Option<f64>) -> Option<Cl
         format!("{order} ± {tolerance}"),
     ];
     let id = format!("{}.{}.{}.{name}", first.scene, first.method, first.quantity.id());
-    Some(claim::claim("ensemble", &id, texts, [evidence]))
+    Some(claim::claim("ensemble", &id, texts, [evidence]).on(&first.scene).by(&first.method))
 }

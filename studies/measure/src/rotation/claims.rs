@@ -5,13 +5,12 @@ use reports::Claim;
 
 use super::laws::nutation_factor;
 use super::long::{DRIFT_END_S, Fate, POINTS};
-use super::orders::{Seen, orders};
+use super::orders::{ORDER_TOLERANCE, Seen, orders};
 use super::row::{Experiment, Row};
 use crate::claim::{self, Evidence, largest};
 use crate::growth;
 use crate::study::{distinct, short};
 use scenes::run::Outcome;
-use scenes::scene::Scene;
 use scenes::scheme::{Rule, Scheme};
 use scenes::theory::Law;
 
@@ -33,76 +32,43 @@ fn claim(id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Eviden
     claim::claim("rotation", id, texts, evidence)
 }
 
-/// What theory says of the attitude of one scheme on one scene: its order, or `None` where the motion is reproduced exactly.
-pub(super) fn expected_order(scheme: Scheme, subject: &str) -> Option<f64> {
-    let states = |fact: fn(&dyn Scene) -> bool| scenes::by_id(subject).is_ok_and(|any| fact(any.scene()));
-    if scheme.lacks_gyroscopic_term() && !states(|scene| scene.gyroscopic_term_vanishes()) {
-        return Some(0.0);
-    }
-    // The angle is a quadratic polynomial of t.
-    let exact = scheme.order() > 1 && scheme.facts().worked_out && states(|scene| scene.turns_about_one_axis());
-    (!exact).then(|| f64::from(scheme.order()))
-}
-
-/// Largest accepted difference of an extrapolated order: the local order of a sweep is p + c h, what extrapolation leaves
-/// is of the second order in h, and no scene of the list has a larger one than this at its finest steps.
-const ORDER_TOLERANCE: f64 = 0.05;
-/// Largest error of a motion that is reproduced exactly: 2^10 steps of a few roundings each.
-const EXACT: f64 = 1e-12;
-
+/// One claim a scheme and order of theory, over all scenes that it has this order on.
 fn order_claims(rows: &[Row]) -> Vec<Claim> {
     let attitudes: Vec<Seen> = orders(rows).into_iter().filter(|seen| seen.quantity == "attitude").collect();
     let mut claims = Vec::new();
     for id in distinct(attitudes.iter().map(|seen| seen.scheme.clone())) {
-        let Some(scheme) = Scheme::from_id(&id) else { continue };
-        let of_scheme = |expected: Option<f64>| -> Vec<&Seen> {
-            attitudes.iter().filter(|s| s.scheme == id && expected_order(scheme, &s.subject) == expected).collect()
-        };
-        let kinds = distinct(attitudes.iter().filter(|s| s.scheme == id).map(|s| expected_order(scheme, &s.subject)));
-        for expected in kinds {
-            let seen = of_scheme(expected);
-            let evidence = seen.iter().flat_map(|s| {
-                let number = match expected {
-                    // A higher order, or no error but rounding, is none the worse.
-                    Some(p) if !scheme.facts().worked_out => {
-                        Evidence::is(s.order.map_or(s.finest.is_some(), |order| order >= p - ORDER_TOLERANCE))
-                    }
-                    Some(_) => Evidence::near(s.order, expected, ORDER_TOLERANCE),
-                    None => Evidence::within(s.finest, [0.0, EXACT]),
-                };
-                [Evidence::is(s.finished), number]
-            });
-            let name = expected.map_or("exact".to_owned(), |p| format!("order-{p}"));
-            let measured = seen.iter().map(|s| match expected {
-                Some(_) => format!("{} {}", s.subject, short(s.order)),
-                None => format!("{} error {}", s.subject, short(s.finest)),
-            });
-            claims.push(claim(
-                &format!("{id}.{name}"),
-                [
-                    match expected {
-                        Some(0.0) => {
-                            format!(
-                                "{id} is inconsistent on {} scenes: its error does not fall with the step",
-                                seen.len()
-                            )
-                        }
-                        Some(p) => format!("the attitude of {id} converges with order {p} on {} scenes", seen.len()),
-                        None => format!("{id} reproduces a quadratic angle exactly"),
-                    },
-                    expected.map_or("no error but rounding".to_owned(), |p| format!("order {p}")),
-                    measured.collect::<Vec<_>>().join("; "),
-                    match expected {
-                        Some(p) if !scheme.facts().worked_out => format!("at least {}", p - ORDER_TOLERANCE),
-                        Some(_) => format!("extrapolated order within {ORDER_TOLERANCE}"),
-                        None => format!("at most {EXACT:.0e} rad"),
-                    },
-                ],
-                evidence,
-            ));
+        let of_scheme: Vec<&Seen> = attitudes.iter().filter(|s| s.scheme == id).collect();
+        for expected in distinct(of_scheme.iter().map(|s| s.theory_order)) {
+            let seen: Vec<&Seen> = of_scheme.iter().copied().filter(|s| s.theory_order == expected).collect();
+            claims.push(order_claim(&id, expected, &seen));
         }
     }
     claims
+}
+
+fn order_claim(id: &str, expected: Option<f64>, seen: &[&Seen]) -> Claim {
+    let name = expected.map_or("exact".to_owned(), |p| format!("order-{p}"));
+    let measured = seen.iter().map(|s| match (expected, s.order) {
+        (Some(_), Some(order)) => format!("{} {}", s.subject, short(Some(order))),
+        _ => format!("{} error {}", s.subject, short(s.finest)),
+    });
+    let texts = [
+        match expected {
+            Some(0.0) => {
+                format!("{id} is inconsistent on {} scenes: its error does not fall with the step", seen.len())
+            }
+            Some(p) => format!("the attitude of {id} converges with order {p} on {} scenes", seen.len()),
+            None => format!("{id} reproduces a quadratic angle exactly"),
+        },
+        expected.map_or("no error but rounding".to_owned(), |p| format!("order {p}")),
+        measured.collect::<Vec<_>>().join("; "),
+        match expected {
+            Some(_) => format!("extrapolated order within {ORDER_TOLERANCE}"),
+            None => "at most 1e-12 rad".to_owned(),
+        },
+    ];
+    let evidence = seen.iter().map(|s| s.agrees.map_or(Evidence::Undecided, Evidence::is));
+    claim(&format!("{id}.{name}"), texts, evidence).by(id).with_numbers([seen.len() as f64])
 }
 
 fn law_claim(row: &Row) -> Option<Claim> {
@@ -343,19 +309,16 @@ fn same_motion_claims(rows: &[Row]) -> Vec<Claim> {
     rows.iter()
         .filter(|row| row.experiment == Experiment::SameMotion)
         .filter_map(|row| {
-            let steps = row.t_s / row.h_s;
+            let (apart, bound) = (row.theory?, row.tolerance?);
             let same = row.scheme.starts_with("semi-implicit");
-            // Either form rounds a few units in the last place a step, and the motion carries earlier roundings along.
-            let bound = 64.0 * f64::EPSILON * steps;
             let (statement, allowed) = if same {
                 ("are the same motion", [0.0, bound])
             } else {
                 ("are two motions", [1e3 * bound, f64::INFINITY])
             };
             let (method, _) = row.scheme.split_once('/')?;
-            // Where the body spins about one axis, the world frame and the body frame are one for explicit Euler too.
-            let about_one_axis = scenes::by_id(&row.subject).is_ok_and(|any| any.scene().turns_about_one_axis());
-            (same || !about_one_axis).then(|| {
+            // Where the axis of the spin keeps its direction, the world frame and the body frame are one for explicit Euler too.
+            (same || apart > 1e5 * bound).then(|| {
                 claim(
                     &format!("same-motion.{}.{method}", row.subject),
                     [
@@ -370,6 +333,8 @@ fn same_motion_claims(rows: &[Row]) -> Vec<Claim> {
                     ],
                     [Evidence::within(row.value, allowed)],
                 )
+                .on(&row.subject)
+                .by(method)
             })
         })
         .collect()

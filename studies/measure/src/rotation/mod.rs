@@ -29,6 +29,7 @@ pub struct Rotation;
 impl Study for Rotation {
     type Row = Row;
     const ID: &'static str = "rotation";
+    const HEEDS: &'static [&'static str] = &["steps", "for"];
     const ABOUT: &'static str =
         "Compares every scheme in use for rigid bodies: error, order, drift, nutation, where the body ends up";
     const EXAMPLES: &'static str = "rotation --scene torque-free-spin --scene heavy-top
@@ -46,7 +47,8 @@ impl Study for Rotation {
         rows.extend(on_free_bodies(selection, &schemes));
         let scenes: Vec<&dyn AnyScene> =
             selection.scenes.iter().map(AsRef::as_ref).filter(|scene| scene.is_rigid()).collect();
-        let same = || in_parallel(&scenes, |_| 1, &selection.progress, |scene| same_motions(*scene));
+        let same =
+            || in_parallel(&scenes, |_| 1, &selection.progress, |scene| same_motions(*scene, selection.end_s(*scene)));
         let (same, printed) = rayon::join(same, printed);
         rows.extend(same.into_iter().flatten());
         rows.extend(printed);
@@ -103,14 +105,14 @@ fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
 }
 
 /// The two forms of semi-implicit Euler, which are one motion, and of explicit Euler, which are not.
-fn same_motions(scene: &dyn AnyScene) -> Vec<Row> {
+fn same_motions(scene: &dyn AnyScene, end_s: f64) -> Vec<Row> {
     let pair = |method| {
         [Storage::WorldOmega, Storage::BodyOmega]
             .map(|storage| Scheme::general(method, storage, AttitudeUpdate::Exponential))
     };
     [MethodId::SemiImplicitEuler, MethodId::ExplicitEuler]
         .into_iter()
-        .flat_map(|method| long::same_motion(scene, pair(method), 256))
+        .flat_map(|method| long::same_motion(scene, pair(method), end_s, 256))
         .collect()
 }
 

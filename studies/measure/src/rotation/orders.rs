@@ -1,15 +1,21 @@
 //! The error of every scheme on every rigid-body scene, and the order it falls with.
 
 use faer::fx128;
+use integrator::methods::MethodId;
+use integrator::rigid_body::{AttitudeUpdate, Storage};
 use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
+use crate::convergence::limit;
+use crate::order::Sample;
 use crate::study::{Selection, distinct};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
+use scenes::erased::{AnyMotion, BodyMotion, ErasedPlace};
 use scenes::observation::{Observation, Quantity};
 use scenes::run::{Outcome, Precision, Run};
-use scenes::scheme::Scheme;
+use scenes::scheme::{Rule, Scheme};
+use scenes::variation::Leading;
 
 /// Halvings of the coarsest step of a sweep; the step of the table is the third finest. A quick report takes them all: an
 /// order is not seen in fewer, and they take a second.
@@ -18,24 +24,89 @@ const HALVINGS: u32 = 7;
 /// Every scene of the selection that is a rigid body, every scheme, every step.
 pub fn measure(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
     let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).filter(|s| s.is_rigid()).collect();
-    let jobs: Vec<(&dyn AnyScene, Scheme)> =
-        scenes.iter().flat_map(|&scene| schemes.iter().map(move |&scheme| (scene, scheme))).collect();
-    let cost = |(_, scheme): &(&dyn AnyScene, Scheme)| if scheme.is_implicit() { 50 } else { 1 };
-    in_parallel(&jobs, cost, &selection.progress, |&(scene, scheme)| sweep(scene, scheme)).concat()
+    let known: Vec<Known> = scenes.iter().map(|&scene| Known::of(scene, selection.end_s(scene))).collect();
+    let of_scene = |(&scene, known)| schemes.iter().map(move |&scheme| (known, scene, scheme));
+    let jobs: Vec<(&Known, &dyn AnyScene, Scheme)> = scenes.iter().zip(&known).flat_map(of_scene).collect();
+    let cost = |(_, _, scheme): &(&Known, &dyn AnyScene, Scheme)| if scheme.is_implicit() { 50 } else { 1 };
+    in_parallel(&jobs, cost, &selection.progress, |&(known, scene, scheme)| {
+        sweep(scene, known, scheme, &selection.sweep(scene, 1..=HALVINGS))
+    })
+    .concat()
 }
 
-fn sweep(scene: &dyn AnyScene, scheme: Scheme) -> Vec<Row> {
-    let info = scene.scene().info();
-    let exact = scene.exact(fx128::lit(info.horizon_s));
-    (1..=HALVINGS).flat_map(|k| errors(scene, scheme, info.coarsest_steps << k, info.horizon_s, &exact)).collect()
+/// What is known of a scene before it is run.
+struct Known {
+    end_s: f64,
+    exact: Observation,
+    leading: Vec<Leading>,
+    /// |J (omega x I omega)| T^2 / 2 at most: by how much a body that lacks the term is turned wrongly, rad.
+    without: f64,
 }
 
-fn errors(scene: &dyn AnyScene, scheme: Scheme, steps: u64, end_s: f64, exact: &Observation) -> Vec<Row> {
+impl Known {
+    fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
+        let exact = scene.exact(fx128::lit(end_s));
+        Known { end_s, exact, leading: scene.leading(end_s), without: 0.5 * gyroscopic(scene, end_s) * end_s * end_s }
+    }
+
+    /// lim error / h^p of theory: of what stores the world's angular velocity, and of semi-implicit Euler in either frame.
+    fn constant(&self, scheme: Scheme, quantity: Quantity) -> Option<f64> {
+        let Rule::General(method) = scheme.rule else { return None };
+        let is_known = match scheme.storage {
+            Storage::WorldOmega => method.order() == 1 || scheme.update == AttitudeUpdate::Exponential,
+            Storage::BodyOmega => method == MethodId::SemiImplicitEuler,
+            _ => false,
+        };
+        let of = |one: &&Leading| (one.method, one.quantity) == (method, quantity);
+        self.leading.iter().find(of).filter(|_| is_known).map(|one| one.end)
+    }
+}
+
+/// The largest |J (omega x I omega)| along the exact motion, rad/s^2.
+fn gyroscopic(scene: &dyn AnyScene, end_s: f64) -> f64 {
+    fn largest<P: ErasedPlace>(body: BodyMotion<'_, P>, end_s: f64) -> f64 {
+        let inertia = body.inertia();
+        let at = |k: u32| {
+            let omega = body.exact(end_s * f64::from(k) / 32.0).omega_body;
+            // By differences of the moments: a sphere has none.
+            let (i, w) = (inertia, omega);
+            let turned = [(i.z - i.y) * w.y * w.z, (i.x - i.z) * w.z * w.x, (i.y - i.x) * w.x * w.y];
+            nalgebra::Vector3::from(turned).component_div(&inertia).norm()
+        };
+        (0..=32).map(at).fold(0.0, f64::max)
+    }
+    match scene.any_motion() {
+        AnyMotion::Pivoted(body) => largest(body, end_s),
+        AnyMotion::Flying(body) => largest(body, end_s),
+        _ => 0.0,
+    }
+}
+
+fn sweep(scene: &dyn AnyScene, known: &Known, scheme: Scheme, all_steps: &[u64]) -> Vec<Row> {
+    all_steps.iter().flat_map(|&steps| errors(scene, known, scheme, steps)).collect()
+}
+
+fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Vec<Row> {
+    let end_s = known.end_s;
     let Some(run) = scene.run(&Run::new(scheme, Precision::F64, end_s, steps), steps) else { return Vec::new() };
-    let row = Row::new(Experiment::Error, scene.id(), scheme, end_s / steps as f64, &run);
-    let error = |quantity| Some(run.end()?.distances(exact).iter().find(|(q, _)| *q == quantity)?.1);
+    let h_s = end_s / steps as f64;
+    let row = Row::new(Experiment::Error, scene.id(), scheme, h_s, &run);
+    let error = |quantity| Some(run.end()?.distances(&known.exact).iter().find(|(q, _)| *q == quantity)?.1);
+    let is_wrong = scheme.lacks_gyroscopic_term() && known.without > 0.0;
+    let order = if is_wrong { 0.0 } else { f64::from(scheme.order()) };
+    // The angle is a quadratic polynomial of t.
+    let exact = scene.scene().turns_about_one_axis() && scheme.facts().worked_out && scheme.order() > 1;
     [Quantity::Attitude, Quantity::AngularVelocity]
-        .map(|quantity| Row { t_s: end_s, ..row.measured(quantity.id(), quantity.unit(), error(quantity)) })
+        .map(|quantity| Row {
+            t_s: end_s,
+            theory: if is_wrong {
+                Some(known.without)
+            } else {
+                known.constant(scheme, quantity).map(|c| c * h_s.powf(order))
+            },
+            theory_order: (!exact).then_some(order),
+            ..row.measured(quantity.id(), quantity.unit(), error(quantity))
+        })
         .into()
 }
 
@@ -50,6 +121,10 @@ pub struct Seen {
     pub quantity: String,
     /// Order between the finest two errors above rounding, extrapolated to h = 0; `None` where every error is rounding.
     pub order: Option<f64>,
+    /// The order that theory predicts; 0 where the model is wrong, `None` where there is no error but rounding.
+    pub theory_order: Option<f64>,
+    /// Whether the errors are what theory says; `None` where they do not tell.
+    pub agrees: Option<bool>,
     /// How far the extrapolation is trusted.
     pub doubt: f64,
     /// Error at the finest step.
@@ -90,10 +165,50 @@ fn seen(sweep: &[&Row]) -> Seen {
         scheme: first.scheme.clone(),
         quantity: first.quantity.clone(),
         order: order.map(|o| o.0),
+        theory_order: first.theory_order,
+        agrees: agrees(sweep, order.map(|o| o.0), &points),
         doubt: order.map_or(0.0, |o| o.1),
         finest: points.last().map(|p| p.1),
         reference: points.iter().rev().nth(2).map(|&(h, e)| (e, h)),
         evaluations: first.evaluations as f64 / steps,
         finished: sweep.iter().all(|row| row.outcome == Outcome::Finished && row.value.is_some_and(f64::is_finite)),
+    }
+}
+
+/// Largest accepted difference of an extrapolated order: the local order of a sweep is p + c h, what extrapolation leaves
+/// is of the second order in h, and no scene of the list has a larger one than this at its finest steps.
+pub const ORDER_TOLERANCE: f64 = 0.05;
+/// Largest error of a motion that is reproduced exactly: 2^10 steps of a few roundings each, and as many for each radian.
+const EXACT: f64 = 1e-12;
+
+/// Whether a sweep shows what theory says: its order; the constant of it, where that is known; at least its order where it is not.
+fn agrees(sweep: &[&Row], order: Option<f64>, points: &[(f64, f64)]) -> Option<bool> {
+    let first = sweep[0];
+    let finished = sweep.iter().all(|row| row.outcome == Outcome::Finished);
+    let finest = points.last().map(|p| p.1);
+    let Some(p) = first.theory_order else {
+        return Some(finished && finest.is_some_and(|error| error <= EXACT));
+    };
+    if !finished || points.len() < 3 {
+        return if first.outcome == Outcome::Finished { Some(false) } else { None };
+    }
+    let near = order.is_some_and(|q| (q - p).abs() <= ORDER_TOLERANCE);
+    if p == 0.0 {
+        // A model that is hardly wrong is seen only below the errors of its method.
+        let is_seen = first.theory.zip(finest).is_some_and(|(without, e)| without.min(1.0) > 16.0 * e.max(FLOOR));
+        return if near { Some(true) } else { is_seen.then_some(false) };
+    }
+    if points.iter().all(|(_, e)| *e <= FLOOR) {
+        return Some(true);
+    }
+    let constant = sweep.last().and_then(|row| Some(row.theory? / row.h_s.powf(p)));
+    let samples: Vec<Sample> = points.iter().map(|&(h_s, e)| Sample { h_s, error: Some(e), floor: 0.0 }).collect();
+    let limit = limit(&samples, p, |_| FLOOR / 16.0);
+    match (constant, limit) {
+        (Some(constant), Some(limit)) => {
+            let right = (limit.value - constant).abs() <= limit.bound * (1.0 + 1e-6) + 1e-9 * constant;
+            if right || near { Some(right) } else { Some(false) }
+        }
+        _ => order.map(|q| q >= p - ORDER_TOLERANCE),
     }
 }

@@ -53,6 +53,8 @@ pub struct Row {
     pub theory: Option<f64>,
     /// The largest accepted |value - theory|.
     pub tolerance: Option<f64>,
+    /// Of an error, the order that theory predicts: 0 where the model is wrong, empty where there is no error but rounding.
+    pub theory_order: Option<f64>,
     /// How the run ended.
     pub outcome: Outcome,
     /// The step at which it failed, or at which the event was seen.
@@ -75,6 +77,7 @@ impl Row {
             value: None,
             theory: None,
             tolerance: None,
+            theory_order: None,
             outcome: run.outcome,
             at_step: run.failed_step,
             evaluations: run.evaluations,
@@ -109,6 +112,7 @@ impl Row {
             self.value.map_or_else(|| "the run failed".to_owned(), |v| format!("{v:.12e} {}", self.unit)),
             format!("within {tolerance:.1e} of theory"),
         ];
-        Some(claim::claim("rotation", id, texts, [self.evidence(theory, tolerance)]))
+        let claim = claim::claim("rotation", id, texts, [self.evidence(theory, tolerance)]);
+        Some(claim.by(&self.scheme).with_numbers(self.value))
     }
 }

@@ -46,10 +46,6 @@ pub(super) fn figures(rows: &[Row]) -> Vec<Figure> {
     figures
 }
 
-fn command() -> String {
-    "cargo run --release --bin rotation".to_owned()
-}
-
 fn errors(rows: &[Row], scene: &str) -> Option<Figure> {
     let of_scene: Vec<&Row> = rows
         .iter()
@@ -74,7 +70,7 @@ fn errors(rows: &[Row], scene: &str) -> Option<Figure> {
         x: Axis::log("step size h (s)"),
         y: Axis::log("attitude error at the end (rad)"),
         layers,
-        command: command(),
+        scene: Some(scene.to_owned()),
         data: "rotation.csv".to_owned(),
         ..Figure::default()
     })
@@ -106,7 +102,6 @@ fn axis(rows: &[Row], subject: &str) -> Figure {
         x: Axis::linear("time (s)"),
         y: Axis::linear("axis coordinate (1)").with_range(-0.05, 1.05),
         layers,
-        command: command(),
         data: "rotation.csv".to_owned(),
         ..Figure::default()
     }
@@ -142,7 +137,6 @@ fn nutation(rows: &[Row]) -> Figure {
         x: Axis::linear("ω h (rad in a step)"),
         y: Axis::linear("nutation factor a step (1)"),
         layers,
-        command: command(),
         data: "rotation.csv".to_owned(),
         ..Figure::default()
     }

@@ -21,11 +21,16 @@ pub const NEUTRAL: f64 = 1e-6;
 pub const ROUNDING: f64 = 1e-12;
 /// How far a step may miss superposition, in parts of the sizes involved, in double-double with Newton's rounding.
 const SUPERPOSITION: f64 = 1e-20;
+/// A determinant or trace of two by two in double-double may miss Jury's conditions by this much, in parts of its terms.
+const JURY: f64 = 1e-24;
 /// Rungs of the ladder on which theory's limit is looked for, in natural time scales: no method of the list becomes
 /// stable again beyond its limit.
 const LADDER: [f64; 2] = [0.002, 1024.0];
 /// Ratio of two rungs.
 const RUNG: f64 = 2.0;
+/// Rungs below the ladder where its first step is not stable: light damping holds explicit Euler with steps of 2 zeta / omega. The
+/// growth z^2 / 2 of a method without a stable step is above the rounding of the matrix there: `JURY`, or `ROUNDING`.
+const RUNGS_BELOW: [i32; 2] = [24, 8];
 
 /// A square matrix, row after row.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +38,7 @@ pub struct Amplification {
     /// Rows and columns.
     pub n: usize,
     /// Entries, row after row.
-    pub entries: Vec<f64>,
+    pub entries: Vec<fx128>,
 }
 
 /// The matrix of one step of length `h_s`; `None` where a step is not an affine map of the coordinates (the scene is not
@@ -73,7 +78,7 @@ fn columns(stepping: &Stepping<'_>, h_s: f64, test: bool) -> Option<Amplificatio
         }
         columns.push(column);
     }
-    let entries = (0..n * n).map(|k| columns[k % n][k / n].to_f64()).collect();
+    let entries = (0..n * n).map(|k| columns[k % n][k / n]).collect();
     Some(Amplification { n, entries })
 }
 
@@ -104,12 +109,13 @@ impl Amplification {
     }
 
     /// Whether no error grows exponentially. For two by two by Jury's conditions |det| <= 1, |tr| <= 1 + det, which are exact
-    /// where the eigenvalues are not: at h omega = 2 they are a defective pair.
+    /// where the eigenvalues are not: at h omega = 2 they are a defective pair, and next to 1 a growth of h^2 is less than they round.
     pub fn is_stable(&self) -> Option<bool> {
         if let [a, b, c, d] = self.entries[..] {
             let (trace, det) = (a + d, a * d - b * c);
-            let slack = 8.0 * f64::EPSILON * (1.0 + a.abs() + d.abs() + (a * d).abs() + (b * c).abs());
-            return (trace + det).is_finite().then(|| det.abs() <= 1.0 + slack && trace.abs() <= 1.0 + det + slack);
+            let terms = fx128::ONE + a.abs() + d.abs() + (a * d).abs() + (b * c).abs();
+            let most = fx128::ONE + terms * fx128::lit(JURY);
+            return (trace + det).is_finite().then(|| det.abs() <= most && trace.abs() <= most + det);
         }
         let values = self.eigenvalues()?;
         let not_neutral = values.iter().filter(|l| (l.re - 1.0).hypot(l.im) > NEUTRAL);
@@ -117,7 +123,7 @@ impl Amplification {
     }
 
     fn faer(&self) -> Mat<f64> {
-        Mat::from_fn(self.n, self.n, |i, j| self.entries[i * self.n + j])
+        Mat::from_fn(self.n, self.n, |i, j| self.entries[i * self.n + j].to_f64())
     }
 }
 
@@ -129,8 +135,13 @@ pub fn limit(stepping: &Stepping<'_>) -> Option<StabilityLimit> {
     matrix(stepping, scale)?;
     let stable = |h: f64| columns(stepping, h, false).and_then(|m| m.is_stable());
     let mut low = LADDER[0] * scale;
-    if !stable(low)? {
-        return Some(StabilityLimit::NoStep);
+    let n = 2 * dimension(stepping.scene);
+    let floor = low / RUNG.powi(RUNGS_BELOW[usize::from(n > 2)]);
+    while !stable(low)? {
+        low /= RUNG;
+        if low < floor {
+            return Some(StabilityLimit::NoStep);
+        }
     }
     while low < LADDER[1] * scale {
         let high = low * RUNG;

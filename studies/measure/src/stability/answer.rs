@@ -14,16 +14,16 @@ use scenes::observation::Value;
 use scenes::run::{Outcome, Precision, Run, Trajectory};
 use scenes::stepping::Stepping;
 
-/// A step, or a rate, to be judged: positive numbers.
+/// A step, or a rate, to judge: positive numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Question {
-    /// A step to be judged, s.
+    /// A step to judge, s.
     pub step_s: Option<f64>,
-    /// Frames a second: how many substeps does each need?
+    /// Frames per second: how many substeps does each need?
     pub rate_hz: Option<f64>,
 }
 
-/// What is said, and whether every step asked about is stable.
+/// The text of an answer, and whether every step asked about is stable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// For the user to read.
@@ -55,6 +55,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
     line(format!("{} with {} in {}", stepping.scene.id(), stepping.method.title(), stepping.precision.id()));
     let linear = amplification::limit(stepping);
     let theory = linear.and_then(limits::number);
+    let trial = linear.map(|limit| limits::Trial::of(stepping, limit));
     let found = match linear {
         Some(limit) => limits::measure(stepping, limit),
         None => measure_nonlinear(stepping.scene, 0.0, |end_s, steps| {
@@ -71,9 +72,13 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
         line(format!("  closed form: {} ({reason})", limits::number(limit).map_or_else(String::new, seconds)));
     }
     let limit_s = match found {
+        _ if trial.is_some_and(|trial| !trial.sees) => {
+            line("  not measured: the growth beyond the limit is too slow to show in a run".to_owned());
+            theory.unwrap_or(0.0)
+        }
         Found::NoStep { tried_s } => {
             line(format!("  measured: no stable step; {} s fails already", significant(tried_s)));
-            0.0
+            theory.unwrap_or(0.0)
         }
         Found::Bracket { low_s, high_s } => {
             line(format!(
@@ -83,13 +88,20 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
                 significant(low_s / scale),
                 significant(high_s / scale)
             ));
-            theory.filter(|t| low_s <= *t && *t <= high_s).unwrap_or(low_s)
+            theory.unwrap_or(low_s)
         }
         Found::Unlimited { tried_s } => {
             line(format!("  measured: no limit found; {} s holds still", significant(tried_s)));
-            f64::INFINITY
+            theory.unwrap_or(f64::INFINITY)
         }
     };
+    if let Some(trial) = trial.filter(|trial| trial.sees) {
+        line(format!(
+            "  judged over {} steps: growth of less than {:.1e} per step would not show",
+            trial.patience,
+            trial.growth()
+        ));
+    }
     if let Some(step) = question.step_s {
         let stable = step <= limit_s;
         answer.stable &= stable;
@@ -103,12 +115,11 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
         } else {
             format!(", {} of the limit", short(Some(step / limit_s)))
         };
-        let _ =
-            writeln!(answer.text, "  step {step} s: {verdict}{margin}{}", substeps_words(step, limit_s, "this step"));
+        let _ = writeln!(answer.text, "  step {step} s: {verdict}{margin}{}", substeps_words(step, limit_s, "step"));
     }
     if let Some(rate) = question.rate_hz {
         let frame = 1.0 / rate;
-        let _ = writeln!(answer.text, "  {rate} frames a second{}", substeps_words(frame, limit_s, "a frame"));
+        let _ = writeln!(answer.text, "  {rate} frames per second{}", substeps_words(frame, limit_s, "frame"));
         answer.stable &= limit_s > 0.0;
     }
 }
@@ -137,8 +148,8 @@ pub fn substeps(h_s: f64, limit_s: f64) -> Option<u64> {
 
 fn substeps_words(h_s: f64, limit_s: f64, of: &str) -> String {
     match substeps(h_s, limit_s) {
-        Some(1) => format!(": 1 substep in {of} is enough for stability"),
-        Some(n) => format!(": {n} substeps in {of} are needed for stability"),
+        Some(1) => format!(": 1 substep per {of} is enough for stability"),
+        Some(n) => format!(": {n} substeps per {of} are needed for stability"),
         None => ": no number of substeps makes this method stable".to_owned(),
     }
 }

@@ -8,7 +8,7 @@ use super::maps::{self, Grid};
 use super::models::{Scheme, modulus, stability_function};
 use super::spin::{FACTOR_TOLERANCE, SpinScheme, blow_up_bound};
 use super::{Part, Row};
-use crate::study::{command, distinct};
+use crate::study::distinct;
 
 pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
     let mut figures = Vec::new();
@@ -45,7 +45,7 @@ fn figure(id: &str, title: String, caption: &str, x: Axis, y: Axis, layers: Vec<
         x,
         y,
         layers,
-        command: command("stability", scene),
+        scene: Some(scene.to_owned()),
         data: "stability.csv".to_owned(),
         ..Figure::default()
     }

@@ -47,6 +47,11 @@ pub fn looks(log2_steps: u32) -> Vec<u64> {
 /// In windows of doubling length the largest size of exponential growth rises by a factor that squares itself from window to
 /// window, that of a power stays the same, that of a bounded size tends to one.
 pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
+    trend_after(sizes, PATIENCE)
+}
+
+/// The same, where growth needs `patience` steps to show.
+pub fn trend_after(sizes: &[(u64, f64)], patience: u64) -> Option<Trend> {
     let length = sizes.last().map_or(0, |(step, _)| *step);
     let start = sizes.first().map_or(0.0, |(_, size)| *size);
     // What has gone stays gone; further on the numbers would underflow.
@@ -64,10 +69,10 @@ pub fn trend(sizes: &[(u64, f64)]) -> Option<Trend> {
     }
     if now <= 1.0 + 0.2 * (STEADY - 1.0) {
         // Standing still proves something only where slow growth would have shown itself.
-        return (now <= FALLING || length >= PATIENCE).then_some(Trend::Bounded);
+        return (now <= FALLING || length >= patience).then_some(Trend::Bounded);
     }
     if earlier > 1.0 && now.ln() < 1.2 * earlier.ln() {
-        return (length >= PATIENCE).then_some(Trend::Power);
+        return (length >= patience).then_some(Trend::Power);
     }
     // A drift that comes up from below a constant has factors that rise to 2: only beyond is it more than that.
     (now > MORE_THAN_LINEAR).then_some(Trend::Exponential)

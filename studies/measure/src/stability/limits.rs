@@ -19,6 +19,10 @@ pub const TRIED: [f64; 2] = [1.0 / 4.0, 1024.0];
 const LENGTHS: [u32; 3] = [10, 16, 20];
 /// The same for implicit methods, whose steps cost a hundred times as much and whose verdicts are not near a limit.
 const IMPLICIT_LENGTHS: [u32; 1] = [8];
+/// Growth over a run, as a natural logarithm, that is told from none: its last half grows by e^1.5.
+const SEEN: f64 = 3.0;
+/// Part of a bracket's width by which a step may lie beyond the limit and not be seen to fail.
+pub const UNSEEN: f64 = 0.25;
 
 /// One job: a scene, a method and a precision.
 pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
@@ -30,22 +34,82 @@ pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
     rows
 }
 
-/// The measured bracket of the largest stable step. Theory says only from how far below its limit the search starts.
+/// The measured bracket of the largest stable step. Theory says only from how far below its limit the search starts, and how long a
+/// run must be for the growth beyond it to show.
 pub fn measure(stepping: &Stepping<'_>, theory: StabilityLimit) -> Found {
     let scale = stepping.scene.scene().info().time_scale_s;
     let from = match theory {
         StabilityLimit::Below(h) => (h / 8.0).min(TRIED[0] * scale),
         StabilityLimit::NoStep | StabilityLimit::Unlimited => TRIED[0] * scale,
     };
-    bracket(from, TRIED[1] * scale, WIDTH, |h| holds(stepping, h))
+    let trial = Trial::of(stepping, theory);
+    bracket(from, TRIED[1] * scale, trial.width, |h| trial.holds(stepping, h))
 }
+
+/// How long a step is judged, and how narrow a bracket that allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// Steps in which growth shows.
+    pub patience: u64,
+    /// Width of the bracket, in parts of its upper end.
+    pub width: f64,
+    /// Whether growth beyond the limit shows at all.
+    pub sees: bool,
+}
+
+impl Trial {
+    /// The width of every bracket where a run of at most 2^20 steps shows the growth of a step that lies [`UNSEEN`] of it beyond the
+    /// limit; the next power of two of it that does, where light damping leaves less growth than that.
+    pub fn of(stepping: &Stepping<'_>, theory: StabilityLimit) -> Self {
+        if stepping.method.is_implicit() {
+            return Trial { patience: 1 << IMPLICIT_LENGTHS[0], width: WIDTH, sees: true };
+        }
+        let StabilityLimit::Below(limit) = theory else {
+            return Trial { patience: judge::PATIENCE, width: WIDTH, sees: true };
+        };
+        let growth = |width: f64| {
+            let matrix = amplification::matrix(stepping, limit * (1.0 + UNSEEN * width));
+            matrix.and_then(|m| m.spectral_radius()).map_or(0.0, f64::ln)
+        };
+        let needed = |width: f64| (SEEN / growth(width).max(f64::MIN_POSITIVE)) as u64;
+        let mut width = WIDTH;
+        while width < WIDEST && needed(width) > 1 << LENGTHS[2] {
+            width *= 2.0;
+        }
+        let enough = |patience: &u64| *patience >= needed(width);
+        let patience = [judge::PATIENCE, 1 << LENGTHS[1]].into_iter().find(enough).unwrap_or(1 << LENGTHS[2]);
+        Trial { patience, width, sees: enough(&patience) }
+    }
+
+    /// The least growth per step, as a natural logarithm, that shows in so many steps.
+    pub fn growth(self) -> f64 {
+        SEEN / self.patience as f64
+    }
+
+    /// Whether the difference of two runs, one displaced, does not grow exponentially. On a linear scene the difference obeys the
+    /// equation without forces: what grows is the method's doing, and a steady drift under gravity does not count.
+    pub fn holds(self, stepping: &Stepping<'_>, h_s: f64) -> bool {
+        let lengths: &[u32] = if stepping.method.is_implicit() { &IMPLICIT_LENGTHS } else { &LENGTHS };
+        for &log2_steps in lengths {
+            match judge::trend_after(&difference(stepping, h_s, &GENERIC, log2_steps), self.patience) {
+                Some(trend) => return trend != Trend::Exponential,
+                None => continue,
+            }
+        }
+        true
+    }
+}
+
+/// The widest bracket, in parts of its upper end: beyond, growth is not looked for.
+const WIDEST: f64 = 0.5;
 
 fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
     let scene = stepping.scene.scene();
     let scale = scene.info().time_scale_s;
-    let found = measure(stepping, theory);
+    let (found, trial) = (measure(stepping, theory), Trial::of(stepping, theory));
     let closed = scene.expected_limit(stepping.method);
     let (low, high, beyond) = match found {
+        _ if !trial.sees => (None, None, f64::NAN),
         Found::NoStep { tried_s } => (None, Some(tried_s), tried_s),
         Found::Bracket { low_s, high_s } => (Some(low_s), Some(high_s), 1.05 * high_s),
         Found::Unlimited { tried_s } => (Some(tried_s), None, tried_s),
@@ -55,7 +119,9 @@ fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
         high: high.map(|h| h / scale),
         theory: number(theory).map(|h| h / scale),
         closed_form: closed.and_then(|(limit, _)| number(limit)).map(|h| h / scale),
-        failure: beyond_the_limit(stepping, beyond),
+        failure: if trial.sees { beyond_the_limit(stepping, beyond) } else { Failure::None },
+        steps: trial.patience,
+        value: (trial.width > WIDTH).then_some(trial.width),
         note: closed.map_or_else(String::new, |(_, reason)| reason.to_owned()),
         ..Row::new(Part::Limit, stepping.scene.id(), stepping.method.id(), stepping.precision, "h / time scale", "1")
     }
@@ -68,19 +134,6 @@ pub fn number(limit: StabilityLimit) -> Option<f64> {
         StabilityLimit::Below(h) => h,
         StabilityLimit::Unlimited => f64::INFINITY,
     })
-}
-
-/// Whether the difference of two runs, one displaced, does not grow exponentially. On a linear scene the difference obeys the
-/// equation without forces: what grows is the method's doing, and a steady drift under gravity does not count.
-pub fn holds(stepping: &Stepping<'_>, h_s: f64) -> bool {
-    let lengths: &[u32] = if stepping.method.is_implicit() { &IMPLICIT_LENGTHS } else { &LENGTHS };
-    for &log2_steps in lengths {
-        match judge::trend(&difference(stepping, h_s, &GENERIC, log2_steps)) {
-            Some(trend) => return trend != Trend::Exponential,
-            None => continue,
-        }
-    }
-    true
 }
 
 /// A displacement with a part in every mode.

@@ -134,8 +134,9 @@ pub struct Stability;
 impl Study for Stability {
     type Row = Row;
     const ID: &'static str = "stability";
-    const ABOUT: &'static str = "Measures the largest stable step of methods on scenes and holds it against theory. With --step or --rate, or with \
-        both --scene and --method, it answers for these and writes no files";
+    const HEEDS: &'static [&'static str] = &["precision"];
+    const ABOUT: &'static str = "Measures the largest stable step of methods on scenes and compares it with theory. Given --step or --rate, or both \
+        --scene and --method, it prints an answer for these and writes no files";
     const EXAMPLES: &'static str =
         "stability                                                      the whole study, into target/stability/
         stability --scene damped-oscillator --method semi-implicit-euler --set zeta=0.1

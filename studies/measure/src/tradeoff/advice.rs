@@ -1,9 +1,11 @@
 //! The answer to a user's question: which method, in which arithmetic, with which step? Nothing is advised that was not run.
 
+use super::budget;
 use super::candidate::{Candidate, Span, candidates};
 use super::clock::{Care, Cost, Task, costs};
 use super::limit::{Limit, limit};
-use super::search::{MOST_STEPS, Need, Search, Tried, attempt, finer, search};
+use super::quantity::Of;
+use super::search::{Need, Search, Tried, attempt, finer, most_steps, search, watched};
 use super::speak;
 use super::truth::Truth;
 use crate::error::Error;
@@ -15,13 +17,15 @@ use scenes::run::Precision;
 /// What is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Question {
-    /// Largest error that can be stood, m or rad.
+    /// Largest acceptable error, in the unit of `of`.
     pub error: Option<f64>,
+    /// What the error is the error of.
+    pub of: Of,
     /// Microseconds of computing, on one core, for each simulated second.
     pub budget_us: Option<f64>,
     /// Length of the run, s; the scene's horizon if it is `None`.
     pub duration_s: Option<f64>,
-    /// Frames a second: steps are whole parts of a frame.
+    /// Frames per second: steps are whole parts of a frame.
     pub rate_hz: Option<f64>,
 }
 
@@ -30,9 +34,9 @@ pub struct Question {
 pub struct Advice {
     /// For the user to read.
     pub text: String,
-    /// Whether every scene asked about can be had.
+    /// Whether some method does what is asked on every scene.
     pub possible: bool,
-    /// The best of each scene, where one can be had.
+    /// The best of each scene, where there is one.
     pub picks: Vec<Option<Pick>>,
 }
 
@@ -55,9 +59,11 @@ pub struct Pick {
     pub cost: Option<Cost>,
 }
 
+/// Most frames of a run, and steps of a run within a budget.
+pub(super) const MOST_FRAMES: u64 = 1 << 20;
 /// Steps of a timed run.
-const TIMED_STEPS: u64 = 1024;
-/// Looks at a run that advice rests on, if frames do not set another number.
+pub(super) const TIMED_STEPS: u64 = 1024;
+/// Samples of a run, if frames do not set another number: where one of them misses the error, the other steps are not looked at.
 const LOOKS: u64 = 64;
 
 impl Question {
@@ -68,9 +74,9 @@ impl Question {
     pub fn check(&self, has_scene: bool) -> Result<(), Error> {
         let numbers = [
             ("--error", self.error, "an error in m or rad, such as 1e-3"),
-            ("--budget-us", self.budget_us, "microseconds for a simulated second, such as 5"),
+            ("--budget-us", self.budget_us, "microseconds per simulated second, such as 5"),
             ("--for", self.duration_s, "seconds, such as 60"),
-            ("--rate", self.rate_hz, "frames a second, such as 60"),
+            ("--rate", self.rate_hz, "frames per second, such as 60"),
         ];
         for (flag, value, example) in numbers {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
@@ -78,14 +84,15 @@ impl Question {
             }
         }
         if !has_scene {
-            return Err(Error::plan(
-                "--scene",
-                "advice is about a scene; name one, such as --scene pendulum".to_owned(),
-            ));
+            return Err(Error::plan("--scene", "advice needs a scene; give one, such as --scene pendulum".to_owned()));
         }
         if self.error.is_none() && self.budget_us.is_none() {
-            let message = "say what can be stood: an error (--error 1e-3) or a budget (--budget-us 5)".to_owned();
-            return Err(Error::plan(if self.rate_hz.is_some() { "--rate" } else { "--for" }, message));
+            let message = "needs an error or a budget; give --error 1e-3 or --budget-us 5".to_owned();
+            let flags = [(self.rate_hz.is_some(), "--rate"), (self.duration_s.is_some(), "--for"), (true, "--of")];
+            return Err(Error::plan(
+                flags.iter().find(|(is_given, _)| *is_given).map_or("--error", |(_, flag)| flag),
+                message,
+            ));
         }
         Ok(())
     }
@@ -99,9 +106,9 @@ impl Question {
         let Some(rate) = self.rate_hz else { return Ok((end_s, None)) };
         // A product of 3600.0000000000005 is 3600 frames.
         let frames = (end_s * rate * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);
-        if frames > MOST_STEPS as f64 {
+        if frames > MOST_FRAMES as f64 {
             let message =
-                format!("{end_s} s at {rate} frames a second are more than {MOST_STEPS} frames; shorten --for");
+                format!("{end_s} s at {rate} frames per second are more than {MOST_FRAMES} frames; shorten --for");
             return Err(Error::plan("--rate", message));
         }
         Ok((frames / rate, Some(frames as u64)))
@@ -116,7 +123,7 @@ pub(super) struct Entry {
 }
 
 /// A run that does what is asked, with the largest stable step.
-type Steady = Result<(Tried, Limit), Search>;
+pub(super) type Steady = Result<(Tried, Limit), Search>;
 
 /// A question about one scene.
 pub(super) struct Asked<'a> {
@@ -141,20 +148,37 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
     let mut advice = Advice { text: String::new(), possible: true, picks: Vec::new() };
     for scene in &selection.scenes {
         let (end_s, frames) = question.span(scene.as_ref())?;
-        let truth = Truth::new(scene.as_ref(), end_s, frames.map_or(LOOKS, looks_at_frames));
         let error = question.error.unwrap_or(f64::INFINITY);
+        let truth = Truth::new(scene.as_ref(), end_s, frames.map_or(LOOKS, looks_at_frames));
+        let truth = truth.at_every_step(question.of, error);
+        check_truth(&truth, scene.id(), question.of)?;
         let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: frames.unwrap_or(2) };
         let asked = Asked { need, frames, question, is_short: !is_chosen };
         let ways = ways(&asked, selection)?;
         let entries = match question.error {
             Some(_) => by_error(&asked, selection, ways),
-            None => by_budget(&asked, &ways),
+            None => budget::by_budget(&asked, &ways),
         };
         let pick = speak::answer(&asked, entries, &mut advice.text);
         advice.possible &= pick.is_some();
         advice.picks.push(pick);
     }
     Ok(advice)
+}
+
+/// Refuses a quantity that the scene does not have, and an exact motion that is not finite.
+fn check_truth(truth: &Truth<'_>, scene: &str, of: Of) -> Result<(), Error> {
+    let [has, is_finite] = truth.is_known();
+    if !has {
+        let message = format!("{scene} has no {}; choose another quantity", of.id());
+        return Err(Error::plan("--of", message));
+    }
+    if !is_finite {
+        let message =
+            "the exact motion leaves the range of the numbers; shorten --for or set other parameters with --set";
+        return Err(Error::plan(format!("--scene {scene}"), message));
+    }
+    Ok(())
 }
 
 /// Looks that fall on frames: a divisor of their number.
@@ -205,13 +229,16 @@ fn stable(asked: &Asked<'_>, candidate: Candidate, precision: Precision, tried: 
         return Ok((tried, limit));
     }
     let none = Search::Unstable { limit_s: limit.h_s };
+    if limit.h_s == 0.0 {
+        return Err(none);
+    }
     let m = (end_s / limit.h_s / unit as f64 * (1.0 - 4.0 * f64::EPSILON)).ceil();
-    if m * unit as f64 > MOST_STEPS as f64 {
+    if m * unit as f64 > most_steps(candidate, precision) as f64 {
         return Err(none);
     }
     let (m, run) = (m as u64, |m: u64| attempt(&asked.need, candidate, precision, m * unit));
     let keeps = |tried: &Tried| tried.error.is_some_and(|e| e <= error);
-    let (tried, finer) = (run(m), finer(m));
+    let (tried, finer) = (run(m), finer(m, unit));
     if !keeps(&tried) || !finer.iter().all(|&m| keeps(&run(m))) {
         return Err(none);
     }
@@ -231,7 +258,7 @@ fn single_step(asked: &Asked<'_>, candidate: Candidate, precision: Precision) ->
 }
 
 /// Times what was found, and runs each with its step doubled.
-fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec<Entry> {
+pub(super) fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec<Entry> {
     let step = |tried: &Tried| asked.need.end_s / tried.steps as f64;
     let mut entries: Vec<Entry> = found
         .into_iter()
@@ -240,7 +267,7 @@ fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec
                 candidate,
                 precision,
                 tried,
-                twice: attempt(&asked.need, candidate, precision, tried.steps.div_ceil(2)),
+                twice: watched(&asked.need, candidate, precision, tried.steps.div_ceil(2)),
                 h_s: step(&tried),
                 limit,
                 cost: None,
@@ -259,7 +286,7 @@ fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Steady)>) -> Vec
 
 /// What is timed for a step: an explicit one costs the same whatever its length, and is timed where the scene is at home; an
 /// implicit one takes more iterations when it is long, and is timed at its own length.
-fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u64, h_s: f64) -> Task {
+pub(super) fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u64, h_s: f64) -> Task {
     let span = if candidate.scheme.is_implicit() {
         let steps = steps.min(TIMED_STEPS);
         Span { end_s: h_s * steps as f64, steps }
@@ -267,67 +294,6 @@ fn task(asked: &Asked<'_>, candidate: Candidate, precision: Precision, steps: u6
         Span { end_s: asked.need.scene.scene().info().horizon_s, steps: TIMED_STEPS }
     };
     Task { candidate, precision, span }
-}
-
-/// The least error of every way within the budget: the steps that it pays for, or half of them and half again where rounding
-/// makes more of them worse.
-fn by_budget(asked: &Asked<'_>, ways: &[(Candidate, Precision)]) -> Vec<Entry> {
-    let h_s = asked.need.scene.scene().info().horizon_s / TIMED_STEPS as f64;
-    let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(asked, c, p, TIMED_STEPS, h_s)).collect();
-    let first = costs(asked.need.scene, &tasks, Care::FULL);
-    let mut entries = timed(
-        asked,
-        ways.iter()
-            .copied()
-            .zip(first.iter().map(|cost| affordable(asked, *cost, 1.0)))
-            .map(|(way, steps)| (way, best_of_halvings(asked, way, steps)))
-            .collect(),
-    );
-    // An implicit step costs what its length makes of it: those that came out too dear take fewer steps, once.
-    for (entry, first) in entries.iter_mut().zip(first) {
-        let over = entry.found.as_ref().ok().and_then(|pick| over_budget(asked, pick)).unwrap_or(1.0);
-        if over > 1.0 {
-            let way = (entry.candidate, entry.precision);
-            let again = best_of_halvings(asked, way, affordable(asked, first, 1.1 * over));
-            let mut one = timed(asked, vec![(way, again)]);
-            entry.found = one.remove(0).found;
-        }
-        if entry.found.as_ref().ok().and_then(|pick| over_budget(asked, pick)).is_some_and(|over| over > 1.0) {
-            entry.found = Err(Search::OverBudget);
-        }
-    }
-    entries
-}
-
-/// Cost over budget, if the cost is known.
-pub(super) fn over_budget(asked: &Asked<'_>, pick: &Pick) -> Option<f64> {
-    // The noise of a timing is not held against a step that was chosen by another one.
-    const NOISE: f64 = 1.1;
-    Some(pick.ns_per_simulated_second()? / (1e3 * asked.question.budget_us? * NOISE))
-}
-
-/// The steps that the budget pays for, over `dearer`: a multiple of the unit, 0 if not even one unit.
-fn affordable(asked: &Asked<'_>, cost: Option<Cost>, dearer: f64) -> u64 {
-    let Some((cost, budget)) = cost.zip(asked.question.budget_us) else { return 0 };
-    let steps = budget * 1e3 * asked.need.end_s / (cost.least_ns * dearer);
-    (steps.min(MOST_STEPS as f64) as u64) / asked.need.unit * asked.need.unit
-}
-
-fn best_of_halvings(asked: &Asked<'_>, way: (Candidate, Precision), steps: u64) -> Steady {
-    let Need { scene, end_s, unit, .. } = asked.need;
-    if steps < unit {
-        return Err(Search::OverBudget);
-    }
-    let limit = limit(scene, way.0, way.1, end_s);
-    let is_stable = |steps: &u64| asked.frames.is_none() || limit.allows(end_s / *steps as f64);
-    if !is_stable(&steps) {
-        return Err(Search::Unstable { limit_s: limit.h_s });
-    }
-    let ladder = (0..8).map(|k| (steps >> k) / unit * unit).filter(|&steps| steps >= unit);
-    let tried = ladder.filter(is_stable).map(|steps| attempt(&asked.need, way.0, way.1, steps));
-    let error = |tried: &Tried| tried.error.unwrap_or(f64::INFINITY);
-    let least = tried.filter(|tried| tried.error.is_some()).min_by(|a, b| error(a).total_cmp(&error(b)));
-    least.map(|least| (least, limit)).ok_or(Search::TooMany { about: None, least: None })
 }
 
 impl Pick {

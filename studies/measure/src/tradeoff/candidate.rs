@@ -6,7 +6,8 @@ use reports::Marker;
 
 use crate::study::color_of;
 use scenes::any::AnyScene;
-use scenes::run::{Precision, Run, Trajectory};
+use scenes::observation::Observation;
+use scenes::run::{Precision, Run, Shown, Trajectory};
 use scenes::scheme::{Rule, Scheme};
 use scenes::timed::{Lap, Laps};
 
@@ -107,6 +108,17 @@ impl Candidate {
     /// One observed run; `None` for a step that the scene, which is no rigid body, cannot take.
     pub fn run(self, scene: &dyn AnyScene, precision: Precision, span: Span, stride: u64) -> Option<Trajectory> {
         scene.run(&Run::new(self.scheme, precision, span.end_s, span.steps), stride)
+    }
+
+    /// One run of which every step is shown; `None` as for [`Self::run`].
+    pub fn show(
+        self,
+        scene: &dyn AnyScene,
+        precision: Precision,
+        span: Span,
+        watch: &dyn Fn(u64, Observation),
+    ) -> Option<Trajectory> {
+        scene.show(&Run::new(self.scheme, precision, span.end_s, span.steps), Shown::To(watch))
     }
 
     /// Whether [`Self::time`] has code for it, or, in double-double, the observed run stands in.

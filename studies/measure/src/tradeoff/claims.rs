@@ -59,7 +59,10 @@ fn question(rows: &[Row]) -> Option<Claim> {
         format!("{cheaper} of {known}"),
         "more than half the scenes on which the sweeps tell".to_owned(),
     ];
-    (known >= MANY).then(|| claim("semi-implicit-or-rk4", texts, [Evidence::is(2 * cheaper > known)]))
+    (known >= MANY).then(|| {
+        claim("semi-implicit-or-rk4", texts, [Evidence::is(2 * cheaper > known)])
+            .with_numbers([cheaper as f64, known as f64])
+    })
 }
 
 /// Roundings on the way to the first increment: of h, of g h and of g h^2, each of eps / 2, and the width of the bracket.
@@ -113,7 +116,9 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
                 format!("{fewest:.0} .. {most:.0}: a factor of 2, the grid of steps"),
             ],
             [Evidence::within(Some(steps), [fewest, most])],
-        ),
+        )
+        .on(scene)
+        .by(method),
         claim(
             &id("error"),
             [
@@ -126,6 +131,8 @@ fn u_curve(minimum: &Minimum) -> Vec<Claim> {
                 format!("{} .. {}", short(Some(least)), short(Some(largest))),
             ],
             [Evidence::within(Some(minimum.error), [least, largest])],
-        ),
+        )
+        .on(scene)
+        .by(method),
     ]
 }

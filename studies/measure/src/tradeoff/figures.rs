@@ -9,12 +9,12 @@ use super::iso::sweeps;
 use super::ucurve::{INDEPENDENT, Minimum, SHOWN, minima};
 use super::{Charge, Part, Row};
 use crate::names::scene_title;
-use crate::study::{color_of, command};
+use crate::study::color_of;
 use scenes::run::Precision;
 use scenes::scheme::Rule;
 
 /// The charts on the page; the others are linked.
-pub(super) const ON_PAGE: [&str; 5] = [
+const ON_PAGE: [&str; 5] = [
     "work-evaluations-pendulum",
     "work-time-pendulum",
     "work-time-kepler",
@@ -58,14 +58,16 @@ fn work(sweeps: &[Vec<&Row>], charge: Charge) -> Option<Figure> {
              its evaluations counts too. Of this machine and this run. A method without any error on this scene has no line.",
         ),
     };
+    let id = format!("work-{id}-{}", scene.replace('/', "-"));
     Some(Figure {
-        id: format!("work-{id}-{}", scene.replace('/', "-")),
+        on_page: ON_PAGE.contains(&id.as_str()),
+        id,
         title: format!("{}: {title}, f64", scene_title(scene)),
         caption: caption.to_owned(),
         x: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
         y: Axis::log(y),
         layers,
-        command: command("tradeoff", scene),
+        scene: Some(scene.to_owned()),
         data: "tradeoff.csv".to_owned(),
         ..Figure::default()
     })
@@ -135,8 +137,10 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         layers.push(model(minimum, sweep));
     }
     let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
+    let id = format!("u-curve-{}", first.scene.replace('/', "-"));
     Some(Figure {
-        id: format!("u-curve-{}", first.scene.replace('/', "-")),
+        on_page: ON_PAGE.contains(&id.as_str()),
+        id,
         title: format!("{}: where a smaller step is worse", scene_title(&first.scene)),
         caption: "Truncation falls with the step, rounding grows with the number of steps, and between them lies the best step. \
                   Lines without marks are an estimate to which nothing was fitted, A / n^p + eps S sqrt(n) / 10: independent roundings. \
@@ -145,7 +149,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         x: Axis::log("step size h (s)"),
         y: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
         layers,
-        command: command("tradeoff", &first.scene),
+        scene: Some(first.scene.to_owned()),
         data: "tradeoff.csv".to_owned(),
         ..Figure::default()
     })

@@ -4,6 +4,7 @@
 //! and no claim rests on them.
 
 pub mod advice;
+mod budget;
 pub mod candidate;
 mod claims;
 pub mod clock;
@@ -13,7 +14,9 @@ mod figures;
 pub mod front;
 pub mod iso;
 pub mod limit;
+pub mod path;
 mod peers;
+pub mod quantity;
 pub mod runs;
 pub mod search;
 mod speak;
@@ -98,15 +101,16 @@ pub struct Tradeoff;
 impl Study for Tradeoff {
     type Row = Row;
     const ID: &'static str = "tradeoff";
-    const ABOUT: &'static str = "Charges methods for their errors, in evaluations and in time. With --error or --budget-us it gives advice for a \
-        scene, which is run before it is given, and writes no files. Errors are the largest over the run: of positions in m, of attitudes \
-        and angles in rad, the larger where a scene has both";
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "for"];
+    const ABOUT: &'static str = "Compares methods by cost at equal error, in evaluations and in time. Given --error or --budget-us it prints advice for a \
+        scene, which it has run, and writes no files. Errors are the largest over the run, at every step in advice and at 32 times in the \
+        study: of positions in m, of attitudes and angles in rad, the larger where a scene has both, or of the quantity after --of";
     const EXAMPLES: &'static str =
         "tradeoff                                                       the whole study, into target/tradeoff/
         tradeoff --scene pendulum --error 1e-3                         the cheapest method, precision and step
-        tradeoff --scene pendulum --budget-us 5                        the least error for 5 us of computing a simulated second
-        tradeoff --scene tennis-racket --error 1e-3 --for 60 --rate 60 every method in a loop of 60 frames a second, for a minute
-        tradeoff --scene kepler --error 1e-3 --method semi-implicit-euler
+        tradeoff --scene pendulum --budget-us 5                        the smallest error for 5 us of computing per simulated second
+        tradeoff --scene tennis-racket --error 1e-3 --for 60 --rate 60 every method in a loop of 60 frames per second, for a minute
+        tradeoff --scene kepler --error 1e-3 --of energy               an error in the energy instead of the position
         tradeoff --ensemble 1000 --scene torque-free-spin              errors over many starts instead of one";
     const TITLE: &'static str = "What does accuracy cost? Work-precision";
     const INTRO: &'static str = "Every method, in three precisions and on rigid bodies with what is stored, is charged for its \
@@ -125,9 +129,6 @@ impl Study for Tradeoff {
     }
     fn figures(rows: &[Row]) -> Vec<Figure> {
         figures::all(rows)
-    }
-    fn is_on_page(figure: &Figure) -> bool {
-        figures::ON_PAGE.contains(&figure.id.as_str())
     }
     fn claims(rows: &[Row]) -> Vec<Claim> {
         claims::all(rows)

@@ -43,7 +43,7 @@ struct Job<'a> {
 /// The error and the evaluations of every run.
 pub fn errors(selection: &Selection) -> Vec<Row> {
     let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
-    let horizon = |scene: &&dyn AnyScene| scene.scene().info().horizon_s;
+    let horizon = |scene: &&dyn AnyScene| selection.end_s(*scene);
     let truths = in_parallel(&scenes, |_| 1, &Progress::silent(), |scene| Truth::new(*scene, horizon(scene), LOOKS));
     let mut jobs = Vec::new();
     for (scene, truth) in selection.scenes.iter().zip(&truths) {
@@ -64,20 +64,20 @@ fn jobs_of<'a>(
     truth: &'a Truth<'a>,
     candidate: Candidate,
 ) -> Vec<Job<'a>> {
-    let info = scene.scene().info();
+    let (end_s, coarsest) = (selection.end_s(scene), selection.coarsest_steps(scene));
     let finest = |&precision: &Precision| {
         let given = selection.steps.iter().max().copied();
-        given.or_else(|| Some(info.coarsest_steps << halvings(candidate, precision, selection.quick)?))
+        given.or_else(|| Some(coarsest << halvings(candidate, precision, selection.quick)?))
     };
     let all: Vec<u64> = if selection.steps.is_empty() {
-        (0..=14).map(|k| info.coarsest_steps << k).filter(|&steps| steps <= MOST_STEPS).collect()
+        (0..=14).map(|k| coarsest << k).filter(|&steps| steps <= MOST_STEPS).collect()
     } else {
         selection.steps.clone()
     };
     let job = |steps: u64| {
         let wanted = |p: &&Precision| finest(p).is_some_and(|finest| steps <= finest);
         let precisions: Vec<Precision> = selection.precisions.iter().filter(wanted).copied().collect();
-        let span = Span { end_s: info.horizon_s, steps };
+        let span = Span { end_s, steps };
         (!precisions.is_empty()).then_some(Job { truth, scene, candidate, precisions, span })
     };
     all.into_iter().filter_map(job).collect()
@@ -200,7 +200,7 @@ fn length_rows(scene: &dyn AnyScene, selection: &Selection, care: Care) -> Vec<R
     let chosen = |candidate: &Candidate| {
         !candidate.scheme.is_implicit() && (!candidate.is_rigid || candidate.scheme.storage == Storage::BodyOmega)
     };
-    let end_s = scene.scene().info().horizon_s;
+    let end_s = selection.end_s(scene);
     let tasks: Vec<Task> = candidates(scene, &selection.methods)
         .into_iter()
         .filter(chosen)

@@ -2,13 +2,13 @@
 //!
 //! An error is no monotone function of the step: near a resonance, or where two errors cancel, a long step meets a level that a
 //! shorter one misses. So a number of steps counts only if the finer ones meet the level too, as far as they are tried: two
-//! doublings, and [`FINER`] between.
+//! doublings, and [`FINER`] between. A run meets a level if its error at every step does; that one sample misses it is enough.
 
 use super::candidate::{Candidate, Span};
-use super::truth::Truth;
+use super::truth::{Truth, Watch};
 use crate::study::distinct;
 use scenes::any::AnyScene;
-use scenes::run::Precision;
+use scenes::run::{Outcome, Precision};
 
 /// What is asked of a run.
 #[derive(Clone, Copy)]
@@ -49,11 +49,15 @@ pub enum Search {
         about: Option<f64>,
         /// The least error met.
         least: Option<Tried>,
+        /// Steps of the longest run tried.
+        searched: u64,
     },
     /// The error does not fall any more: rounding, or a failure. The best run is given, if any finished.
     Never {
         /// The least error met.
         least: Option<Tried>,
+        /// Steps of the longest run tried.
+        searched: u64,
     },
     /// Not even the coarsest run is within the budget.
     OverBudget,
@@ -64,105 +68,156 @@ pub enum Search {
     },
 }
 
-/// Steps beyond which a search gives up.
-pub const MOST_STEPS: u64 = 1 << 20;
+/// Steps beyond which a search gives up: less than a second of f32 or f64, of implicit steps or of double-double.
+pub fn most_steps(candidate: Candidate, precision: Precision) -> u64 {
+    match (candidate.scheme.is_implicit(), precision == Precision::DoubleDouble) {
+        (false, false) => 1 << 24,
+        (true, true) => 1 << 16,
+        _ => 1 << 20,
+    }
+}
+
 /// Multiples of the number of steps found at which the error has to be kept too.
 pub const FINER: [f64; 8] = [1.04, 1.13, 1.27, 1.41, 1.62, 2.0, 2.83, 4.0];
+/// The same for a long run.
+const FINER_LONG: [f64; 2] = [1.41, 2.0];
+/// A run of more steps is a long one.
+const LONG: u64 = 1 << 18;
+/// Runs up to this length are watched at every step from the beginning; longer ones only where their samples keep the error.
+const SHORT: u64 = 1 << 12;
 /// How finely the number of steps is found: one part in so many, or one step.
 const RESOLUTION: u64 = 128;
+/// The same for a long run.
+const RESOLUTION_LONG: u64 = 16;
 /// Multiples of the first number of steps found beyond which no better one is looked for.
 const HIGHEST: u64 = 8;
 /// Doublings without a new least error after which rounding is to blame: a run that met a low error by luck is overtaken sooner by
 /// a method of first order, whose error falls by this power of two meanwhile.
 const STALLED: usize = 6;
-/// A least error above this may be one far from convergence.
+/// A least error above this part of the motion's size may be one far from convergence.
 const CONVERGING: f64 = 0.1;
 
-/// One run with so many steps.
-pub fn attempt(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
+/// One run with so many steps, and its largest error over all of them.
+pub fn watched(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
+    let run = |watch: &Watch<'_, '_>| {
+        let span = Span { end_s: need.end_s, steps };
+        let run = candidate.show(need.scene, precision, span, &|i, seen| watch.see(i, seen))?;
+        let finished = run.outcome == Outcome::Finished;
+        Some((run.evaluations, if finished { watch.largest() } else { (None, true) }))
+    };
+    let tried = |(evaluations, (error, _))| Tried { steps, error, evaluations, finer: 0 };
+    let failed = Tried { steps, error: None, evaluations: 0, finer: 0 };
+    match run(&Watch::new(need.truth, steps)) {
+        Some((_, (_, false))) => run(&Watch::exactly(need.truth, steps)).map_or(failed, tried),
+        found => found.map_or(failed, tried),
+    }
+}
+
+/// The same at the samples alone: an error that may be too small.
+fn sampled(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
     let span = Span { end_s: need.end_s, steps };
     let run = candidate.run(need.scene, precision, span, need.truth.stride(steps));
     let error = run.as_ref().and_then(|run| need.truth.errors(run, steps)).map(|errors| errors.largest);
     Tried { steps, error, evaluations: run.map_or(0, |run| run.evaluations), finer: 0 }
 }
 
-/// The finer numbers of steps that are tried beside `m`.
-pub fn finer(m: u64) -> Vec<u64> {
-    distinct(FINER.map(|f| (m as f64 * f).ceil() as u64))
+/// One run with so many steps: its largest error over all of them, or over its samples where these miss the level already.
+pub fn attempt(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
+    if steps > SHORT {
+        let tried = sampled(need, candidate, precision, steps);
+        if !need.is_met(&tried) {
+            return tried;
+        }
+    }
+    watched(need, candidate, precision, steps)
+}
+
+impl Need<'_> {
+    /// Whether a run keeps the error.
+    pub fn is_met(&self, tried: &Tried) -> bool {
+        tried.error.is_some_and(|error| error <= self.error)
+    }
+}
+
+/// The finer numbers of steps that are tried beside `m` times a unit.
+pub fn finer(m: u64, unit: u64) -> Vec<u64> {
+    let factors: &[f64] = if m * unit > LONG { &FINER_LONG } else { &FINER };
+    distinct(factors.iter().map(|f| (m as f64 * f).ceil() as u64))
 }
 
 /// The largest step of a method that keeps the error.
 pub fn search(need: &Need<'_>, candidate: Candidate, precision: Precision) -> Search {
+    let most = most_steps(candidate, precision);
     let run = |m: u64| attempt(need, candidate, precision, m * need.unit);
-    let meets = |tried: &Tried| tried.error.is_some_and(|error| error <= need.error);
+    // The two doublings that bear out a long run are not watched at every step.
+    let double =
+        |m: u64| if m * need.unit > LONG { sampled(need, candidate, precision, m * need.unit) } else { run(m) };
     let mut doubled: Vec<Tried> = Vec::new();
     let mut m = 1;
-    let first = loop {
-        let tried = run(m);
+    loop {
+        let tried = double(m);
         doubled.push(tried);
         // Three in a row: the first of them, with two doublings that bear it out.
-        if let [.., a, b, c] = &doubled[..]
-            && meets(a)
-            && meets(b)
-            && meets(c)
-        {
-            break m / 4;
+        let borne_out = matches!(&doubled[..], [.., a, b, c] if [a, b, c].iter().all(|tried| need.is_met(tried)));
+        if borne_out && let Some(found) = narrow(need, m / 4, run) {
+            return Search::Found(found);
         }
-        let kept = meets(&tried);
-        if let Some(end) = hopeless(&doubled, need.error, candidate).filter(|_| !kept) {
-            return end;
+        let (kept, searched) = (need.is_met(&tried), tried.steps);
+        let least = least(&doubled);
+        if !kept && is_stalled(&doubled, least, need.truth.scale()) {
+            return Search::Never { least: least.map(|(_, least)| least), searched };
         }
-        if tried.steps >= MOST_STEPS && !kept || tried.steps >= 4 * MOST_STEPS {
-            let about = extrapolated(&doubled, need.error, candidate);
-            return Search::TooMany { about, least: least(&doubled).map(|(_, least)| least) };
+        let is_converging = tried.error.is_some_and(|error| error < CONVERGING * need.truth.scale());
+        let about = extrapolated(&doubled, need.error, candidate).filter(|_| is_converging);
+        let is_hopeless = about.is_some_and(|about| about > 2.0 * most as f64);
+        if !kept && (searched >= most || is_hopeless) || searched >= 4 * most {
+            return Search::TooMany { about: about.filter(|_| !kept), least: least.map(|(_, least)| least), searched };
         }
         m *= 2;
-    };
-    narrow(first, meets, run)
+    }
 }
 
-/// Bisects between half of `first` and `first`, which is kept, and starts again above every finer step that breaks the level.
-fn narrow(first: u64, meets: impl Fn(&Tried) -> bool, run: impl Fn(u64) -> Tried) -> Search {
+/// Bisects between half of `first` and `first`, and starts again above every finer step that breaks the level; `None` where finer
+/// ones break it again and again, or `first` does.
+fn narrow(need: &Need<'_>, first: u64, run: impl Fn(u64) -> Tried) -> Option<Tried> {
     let (mut low, mut high) = (first / 2, first);
+    let resolution = if first * need.unit > LONG { RESOLUTION_LONG } else { RESOLUTION };
     let mut best = run(high);
+    if !need.is_met(&best) {
+        return None;
+    }
     loop {
-        while high - low > (high / RESOLUTION).max(1) {
+        while high - low > (high / resolution).max(1) {
             let middle = low + (high - low) / 2;
             let tried = run(middle);
-            if meets(&tried) {
+            if need.is_met(&tried) {
                 (high, best) = (middle, tried);
             } else {
                 low = middle;
             }
         }
-        let finer = finer(high);
-        let breaks = finer.iter().copied().filter(|&m| !meets(&run(m))).max();
-        let Some(breaks) = breaks else { return Search::Found(Tried { finer: finer.len(), ..best }) };
+        let finer = finer(high, need.unit);
+        let breaks = finer.iter().copied().filter(|&m| !need.is_met(&run(m))).max();
+        let Some(breaks) = breaks else { return Some(Tried { finer: finer.len(), ..best }) };
         // Above the breaking one: the next that is kept. Where finer ones break it again and again, rounding does.
-        (low, high) = (breaks, breaks + (breaks / RESOLUTION).max(1));
+        (low, high) = (breaks, breaks + (breaks / resolution).max(1));
         best = run(high);
-        while !meets(&best) && high <= HIGHEST * first {
+        while !need.is_met(&best) && high <= HIGHEST * first {
             low = high;
             high += (high / 16).max(1);
             best = run(high);
         }
         if high > HIGHEST * first {
-            return Search::Never { least: None };
+            return None;
         }
     }
 }
 
-/// Whether the doublings so far tell that no more of them will do.
-fn hopeless(doubled: &[Tried], level: f64, candidate: Candidate) -> Option<Search> {
-    let least = least(doubled);
-    let stalled =
-        |(i, least): &(usize, Tried)| i + STALLED < doubled.len() && least.error.is_some_and(|e| e < CONVERGING);
-    if let Some((_, least)) = least.filter(stalled) {
-        return Some(Search::Never { least: Some(least) });
-    }
-    let about = extrapolated(doubled, level, candidate)?;
-    (about > 16.0 * MOST_STEPS as f64)
-        .then_some(Search::TooMany { about: Some(about), least: least.map(|(_, least)| least) })
+/// Whether the error has ceased to fall, at a level at which a method converges.
+fn is_stalled(doubled: &[Tried], least: Option<(usize, Tried)>, scale: f64) -> bool {
+    least.is_some_and(|(i, least)| {
+        i + STALLED < doubled.len() && least.error.is_some_and(|error| error < CONVERGING * scale)
+    })
 }
 
 /// The run with the least error, and its place; `None` where every run failed.

@@ -5,8 +5,10 @@ use std::fmt::Write;
 
 use reports::Table;
 
-use super::advice::{Asked, Entry, Pick, over_budget};
-use super::search::{Search, Tried, attempt};
+use super::advice::{Asked, Entry, Pick};
+use super::budget::over_budget;
+use super::quantity::Of;
+use super::search::{Search, Tried, watched};
 use crate::stability::answer::significant;
 use crate::study::short;
 use scenes::any::AnyScene;
@@ -28,7 +30,7 @@ pub(super) fn answer(asked: &Asked<'_>, mut entries: Vec<Entry>, text: &mut Stri
             advice(asked, best, other.copied(), text);
         }
         None => {
-            let _ = writeln!(text, "  cannot be had with {}", nearest(asked, &entries));
+            let _ = writeln!(text, "  {}", nearest(asked, &entries));
         }
     }
     let _ = writeln!(text, "\n{}", table(asked, &entries).to_text());
@@ -44,28 +46,28 @@ fn allowed(asked: &Asked<'_>, pick: &Pick) -> bool {
 }
 
 /// Less is better: time where the error was given (evaluations where nothing is timed), error where the budget was; behind them
-/// what cannot be had, by the least error that it came to.
+/// what does not do what is asked, by the least error that it came to.
 fn rank(asked: &Asked<'_>, entry: &Entry) -> (bool, f64) {
     match &entry.found {
-        Err(Search::TooMany { least: Some(least), .. } | Search::Never { least: Some(least) }) => {
+        Err(Search::TooMany { least: Some(least), .. } | Search::Never { least: Some(least), .. }) => {
             (true, least.error.unwrap_or(f64::INFINITY))
         }
         // They met the error, and fail for another reason.
-        Err(Search::Never { least: None } | Search::Unstable { .. }) => (true, asked.need.error),
+        Err(Search::Never { least: None, .. } | Search::Unstable { .. }) => (true, asked.need.error),
         Err(_) => (true, f64::INFINITY),
         Ok(pick) if asked.question.error.is_none() => (false, pick.tried.error.unwrap_or(f64::MAX)),
         Ok(pick) => (false, pick.ns_per_simulated_second().unwrap_or(1e200 * pick.tried.evaluations as f64)),
     }
 }
 
-/// What was not refused by far, and why it was all the same.
+/// What came nearest, and why it does not do what is asked.
 fn nearest(asked: &Asked<'_>, entries: &[Entry]) -> String {
-    let these = if entries.len() > 1 { "any of these" } else { "this" };
-    let why = entries.first().map(|entry| match &entry.found {
-        Ok(_) => format!("{} in {} is over the budget", entry.candidate.label(), entry.precision.id()),
-        Err(_) => format!("{} in {}: {}", entry.candidate.label(), entry.precision.id(), reason(asked, entry)),
+    let does = if asked.question.error.is_some() { "reaches the error" } else { "keeps the budget" };
+    let nearest = entries.first().map_or_else(String::new, |entry| {
+        let why = entry.found.as_ref().map_or_else(|_| reason(asked, entry), |_| "over the budget".to_owned());
+        format!("; nearest: {} in {}: {why}", entry.candidate.label(), entry.precision.id())
     });
-    format!("{these}; nearest: {}", why.unwrap_or_default())
+    format!("no method tried {does}{nearest}")
 }
 
 fn headline(asked: &Asked<'_>) -> String {
@@ -73,14 +75,20 @@ fn headline(asked: &Asked<'_>) -> String {
     let unit = asked.need.truth.unit();
     let mut words = vec![];
     if let Some(error) = asked.question.error {
-        words.push(format!("an error of at most {} {unit}", significant(error)));
+        words.push(format!("an error of at most {} {unit}{}", significant(error), of(asked)));
     }
     if let Some(budget) = asked.question.budget_us {
-        words.push(format!("at most {} us of computing a simulated second", significant(budget)));
+        words.push(format!("at most {} us of computing per simulated second", significant(budget)));
     }
     let frames = asked.frames.map_or_else(String::new, |frames| format!(", in {}", counted(frames, "frame")));
     let end = significant(asked.need.end_s);
     format!("{}: {} over {end} s{frames}", scene.id(), words.join(" and "))
+}
+
+/// ` in the velocity`, where something else than the configuration was asked for.
+fn of(asked: &Asked<'_>) -> String {
+    let of = asked.question.of;
+    if of == Of::Configuration { String::new() } else { format!(" in the {}", of.id().replace('-', " ")) }
 }
 
 fn advice(asked: &Asked<'_>, best: &Pick, other: Option<&Pick>, text: &mut String) {
@@ -132,7 +140,7 @@ fn cost(pick: &Pick) -> String {
     let evaluations = format!("{} of the force", counted(pick.tried.evaluations, "evaluation"));
     match (pick.cost, pick.ns_per_simulated_second()) {
         (Some(cost), Some(ns)) => format!(
-            "{} us a simulated second ({:.1} ns and {:.0} cycles a step, median {:.1} ns); {evaluations}",
+            "{} us per simulated second ({:.1} ns and {:.0} cycles per step, median {:.1} ns); {evaluations}",
             short(Some(ns / 1e3)),
             cost.least_ns,
             cost.cycles,
@@ -147,9 +155,9 @@ fn cost_of_frame(asked: &Asked<'_>, pick: &Pick) -> String {
     ns.map_or_else(|| "not timed".to_owned(), |us| format!("{} us", short(Some(us))))
 }
 
-/// The advice, run again, and with its step doubled.
+/// The advice, run again and watched at every step, and with its step doubled.
 fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
-    let again = attempt(&asked.need, pick.candidate, pick.precision, pick.tried.steps);
+    let again = watched(&asked.need, pick.candidate, pick.precision, pick.tried.steps);
     let error =
         |error: Option<f64>| error.map_or("the run fails".to_owned(), |e| format!("error {} {unit}", short(Some(e))));
     let twice = pick.twice;
@@ -159,7 +167,12 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
         Some(level) if e.is_some_and(|e| e <= level) => " - met",
         Some(_) => " - missed",
     };
-    let mut lines = vec![format!("{}: {}{}", counted(again.steps, "step"), error(again.error), verdict(again.error))];
+    let mut lines = vec![format!(
+        "{}: {} at worst over all of them{}",
+        counted(again.steps, "step"),
+        error(again.error),
+        verdict(again.error)
+    )];
     if pick.tried.steps == 1 {
         lines.push("one step is the whole run".to_owned());
     } else if asked.frames == Some(pick.tried.steps) {
@@ -167,7 +180,7 @@ fn checks(asked: &Asked<'_>, pick: &Pick, unit: &str) -> Vec<String> {
     } else {
         let is_met = level.is_some_and(|level| twice.error.is_some_and(|e| e <= level));
         let luck = match (is_met, asked.frames.is_none() || pick.limit.allows(2.0 * pick.h_s)) {
-            (true, true) => " by luck: a step between the two misses",
+            (true, true) => ", but a step between the two misses it",
             (true, false) => ", but not stable",
             _ => "",
         };
@@ -196,17 +209,17 @@ fn runner_up(asked: &Asked<'_>, best: &Pick, other: &Pick, unit: &str) -> String
         return format!("{name}: error {} {unit}, {} times as large", short(other.tried.error), short(factor));
     }
     match other.ns_per_simulated_second().zip(best.ns_per_simulated_second()) {
-        Some((a, b)) => format!("{name}: {} us a simulated second, {:.2} times as much", short(Some(a / 1e3)), a / b),
+        Some((a, b)) => format!("{name}: {} us per simulated second, {:.2} times as much", short(Some(a / 1e3)), a / b),
         None => format!("{name}: {}", counted(other.tried.evaluations, "evaluation")),
     }
 }
 
 /// Every method with what is stored, in the arithmetic that suits it best.
 fn table(asked: &Asked<'_>, entries: &[Entry]) -> Table {
-    let (frame, step) = ("substeps a frame", "step (s)");
+    let (frame, step) = ("substeps per frame", "step (s)");
     let headers = match asked.frames {
-        Some(_) => ["method", "arithmetic", frame, step, "error", "us a frame", "of the stability limit"],
-        None => ["method", "arithmetic", "steps", step, "error", "us a second", "of the stability limit"],
+        Some(_) => ["method", "arithmetic", frame, step, "error", "us per frame", "of the stability limit"],
+        None => ["method", "arithmetic", "steps", step, "error", "us per second", "of the stability limit"],
     };
     let mut table = Table::new(&headers, &headers[2..6]);
     let mut seen = Vec::new();
@@ -224,7 +237,7 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     let name = [entry.candidate.label(), entry.precision.id().to_owned()];
     let Ok(pick) = &entry.found else {
         let blanks = ["–"; 4].map(str::to_owned);
-        return name.into_iter().chain(blanks).chain([format!("cannot be had: {}", reason(asked, entry))]).collect();
+        return name.into_iter().chain(blanks).chain([reason(asked, entry)]).collect();
     };
     let (steps, us) = match asked.frames.zip(asked.question.rate_hz) {
         Some((frames, rate)) => (pick.tried.steps / frames, pick.ns_per_simulated_second().map(|ns| ns / rate / 1e3)),
@@ -241,17 +254,22 @@ fn line(asked: &Asked<'_>, entry: &Entry) -> Vec<String> {
     name.into_iter().chain(cells).collect()
 }
 
-/// Why something cannot be had.
+/// Why a method does not do what is asked.
 fn reason(asked: &Asked<'_>, entry: &Entry) -> String {
-    let at_least = |least: &Option<Tried>| {
-        least.map(|t| format!("least error {} at {}", short(t.error), counted(t.steps, "step")))
+    let least_of = |least: &Option<Tried>, searched: &u64| {
+        let least = least.map(|t| format!("least error {} at {}", short(t.error), counted(t.steps, "step")));
+        format!(
+            "{}; searched up to {}",
+            least.unwrap_or_else(|| "every run fails".to_owned()),
+            counted(*searched, "step")
+        )
     };
     match &entry.found {
-        Err(Search::TooMany { about: Some(steps), .. }) => format!("about {steps:.1e} steps"),
-        Err(Search::TooMany { about: None, least }) => at_least(least).unwrap_or_else(|| "every run fails".to_owned()),
-        Err(Search::Never { least }) => {
-            format!("rounding; {}", at_least(least).unwrap_or_else(|| "finer steps miss the error again".to_owned()))
+        Err(Search::TooMany { about: Some(steps), searched, .. }) => {
+            format!("about {steps:.1e} steps; searched up to {}", counted(*searched, "step"))
         }
+        Err(Search::TooMany { about: None, least, searched }) => least_of(least, searched),
+        Err(Search::Never { least, searched }) => format!("rounding; {}", least_of(least, searched)),
         Err(Search::OverBudget) => "not within the budget".to_owned(),
         Err(Search::Unstable { limit_s: 0.0 }) => "no stable step".to_owned(),
         Err(Search::Unstable { limit_s }) => {

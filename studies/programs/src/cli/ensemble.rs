@@ -6,6 +6,7 @@ use measure::study::{Selection, Study};
 use reports::{Block, OutputDir};
 
 use super::{Common, Ending, Format};
+use crate::plan::Plan;
 use crate::produce::{self, Judged, Product, from_rows};
 use crate::provenance::Manifest;
 use crate::summary;
@@ -18,7 +19,7 @@ use crate::summary;
 pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Format) -> Result<Product, Error> {
     check(selection, count, seed)?;
     selection.progress.name(Ensemble::ID);
-    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), format)?;
+    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), &Plan::default(), format)?;
     let cost = cost::table(selection, count, seed)?;
     let name = format!("{}.csv", cost.name);
     product.files.push((name.clone(), cost.csv.into_bytes()));

@@ -22,7 +22,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::{expm1, log1p};
 use crate::special::scaled::Scaled;
 use crate::theory::Law;
@@ -154,9 +154,9 @@ impl BouncingBall {
         (height.value(), speed.times(Scaled::of_wide(left - two * since)).value())
     }
 
-    /// Bounces until the horizon.
-    fn bounces(&self) -> u64 {
-        let late = self.lateness(fx128::lit(self.info().horizon_s));
+    /// Bounces until `end_s`.
+    fn bounces(&self, end_s: f64) -> u64 {
+        let late = self.lateness(fx128::lit(end_s));
         if late.0 < 0.0 { 0 } else { self.arc(late).map_or(0, |arc| arc.bounces) }
     }
 
@@ -166,9 +166,9 @@ impl BouncingBall {
     /// In flight the positions of explicit (`lag` = 1) and semi-implicit or implicit Euler (-1) lie on the parabola of the
     /// velocity u = v + lag g h / 2; the others have lag 0. `delay` and `extra` are the lateness of the ball and the excess of
     /// its speed u, in h and g h.
-    fn first_order(&self, lag: f64) -> ([f64; 2], Vec<[f64; 2]>) {
-        let (g, e, count) = (self.gravity, self.restitution, self.bounces());
-        let late = self.lateness(fx128::lit(self.info().horizon_s));
+    fn first_order(&self, lag: f64, end_s: f64) -> ([f64; 2], Vec<[f64; 2]>) {
+        let (g, e, count) = (self.gravity, self.restitution, self.bounces(end_s));
+        let late = self.lateness(fx128::lit(end_s));
         let arc = if late.0 < 0.0 { None } else { self.arc(late) };
         let end =
             arc.map_or((0.0, 0.0), |arc| (arc.since.to_f64() * self.flight().value().to_f64(), arc.left.to_f64()));
@@ -198,8 +198,8 @@ impl BouncingBall {
     }
 
     /// The largest |error| / h over all phases of the bounces in their steps.
-    fn envelope(&self, lag: f64) -> [f64; 2] {
-        let (none, each) = self.first_order(lag);
+    fn envelope(&self, lag: f64, end_s: f64) -> [f64; 2] {
+        let (none, each) = self.first_order(lag, end_s);
         let (mut low, mut high) = (none, none);
         for late in each {
             for c in 0..2 {
@@ -251,14 +251,23 @@ fn lag(method: MethodId) -> f64 {
 
 impl Scene for BouncingBall {
     fn info(&self) -> Info {
+        let rate = self.gravity / self.impact_speed().to_f64();
+        let mut pace = Pace { horizon_s: 2.25, coarsest_steps: 16 }.at(rate / 1.8);
+        while pace.horizon_s >= 0.9375 * self.rest_s() && self.rest_s() > 0.0 {
+            pace.horizon_s *= 0.5;
+        }
         Info {
             about: "a ball whose bounces are seen at the end of a step: no method is better than first order",
             equation: r"\ddot x = -g;\quad x < 0,\ v < 0:\ v\to -e\,v",
             source: "parabolas and a geometric series (E. Falcon et al., Eur. Phys. J. B 3 (1998) 45)",
-            horizon_s: 2.25,
+            horizon_s: pace.horizon_s,
             time_scale_s: self.impact_speed().to_f64() / self.gravity,
-            coarsest_steps: 16,
+            coarsest_steps: pace.coarsest_steps,
         }
+    }
+
+    fn ends_s(&self) -> f64 {
+        self.rest_s()
     }
 
     fn check(&self) -> Result<(), Error> {
@@ -290,10 +299,10 @@ impl Scene for BouncingBall {
         answerable::range("bouncing-ball", self, &seen, end)
     }
 
-    fn breaks_s(&self) -> Vec<f64> {
+    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
         let first = self.first_flight();
         let at = |n: u64| self.flight().times(Scaled::of_wide(first + self.flights(fx128::lit(n as f64))));
-        (0..self.bounces()).map(|n| at(n).value().to_f64()).collect()
+        (0..self.bounces(end_s)).map(|n| at(n).value().to_f64()).collect()
     }
 
     fn is_periodic(&self) -> bool {
@@ -314,10 +323,21 @@ impl Scene for BouncingBall {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let [x, v] = self.envelope(lag(method));
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        if self.breaks_s(end_s).is_empty() {
+            return match (lag(method), quantity) {
+                (0.0, _) | (_, Quantity::Velocity) => Theory::exact("no bounce: v is linear in t, x a parabola"),
+                _ => Theory::with_constant(
+                    method,
+                    0.5 * self.gravity * end_s,
+                    "no bounce: x is wrong by exactly -+ g t h / 2",
+                ),
+            };
+        }
+        let [x, v] = self.envelope(lag(method), end_s);
         Theory {
             order: ExpectedOrder::Envelope(1.0),
+            doubt: 0.0,
             constant: Some(if quantity == Quantity::Position { x } else { v }),
             reason: "a bounce is seen up to h late and the ball is delayed by twice that: at most C h, with a factor that \
                      depends on where in its step each bounce falls",
@@ -333,6 +353,6 @@ impl Scene for BouncingBall {
             -1.0 => (Law::Linear, "E_n - E_0 = -n m g^2 h^2 / 2: a step loses m g^2 h^2 / 2, a bounce nothing"),
             _ => (Law::AtTheFloor, "exact on a parabola, and the reflection keeps position and speed"),
         };
-        Some(ExpectedGrowth { law, bounds: None, reason })
+        Some(ExpectedGrowth { law, bounds: None, seen_after_s: 0.0, reason })
     }
 }

@@ -20,7 +20,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::{sinc, versine_over_square, x_minus_sin};
 use crate::special::scaled::{Scaled, exponent_of_largest, sum_of_vectors, times_two_to};
 use crate::theory::Law;
@@ -132,13 +132,14 @@ impl<T: Single> Motion<T> for ChargedParticle {
 
 impl Scene for ChargedParticle {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.gyration() / 2.0);
         Info {
             about: "a charge in crossed fields: the force depends on the velocity, and both Eulers gain energy alike",
             equation: r"m\,\dot{\mathbf v} = q\,(\mathbf E + \mathbf v\times\mathbf B)",
             source: "J. D. Jackson, Classical Electrodynamics (1999), 12.2 and 12.3",
-            horizon_s: 2.25,
+            horizon_s: pace.horizon_s,
             time_scale_s: 1.0 / self.gyration(),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -171,8 +172,8 @@ impl Scene for ChargedParticle {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.linear().theory(method, quantity, end_s)
     }
 
     fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
@@ -180,6 +181,7 @@ impl Scene for ChargedParticle {
         let rate = |excess: f64, reason| ExpectedGrowth {
             law: Law::Exponential,
             bounds: Some([excess.ln_1p() / h_s; 2]),
+            seen_after_s: 0.0,
             reason,
         };
         let growth = match method {
@@ -196,6 +198,7 @@ impl Scene for ChargedParticle {
             MethodId::ImplicitMidpoint => ExpectedGrowth {
                 law: Law::AtTheFloor,
                 bounds: None,
+                seen_after_s: 0.0,
                 reason: "v^2 is a quadratic invariant, conserved exactly",
             },
             _ => return None,

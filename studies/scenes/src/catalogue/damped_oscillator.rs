@@ -15,7 +15,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -86,13 +86,14 @@ impl<T: Single> Motion<T> for DampedOscillator {
 
 impl Scene for DampedOscillator {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.oscillation().fastest() / 2.0);
         Info {
             about: "a damped mass on a spring: under-damped, critical (a double root) or over-damped (two rates)",
             equation: r"m\,\ddot x = -k\,x - c\,\dot x,\quad c = 2\zeta\sqrt{k\,m}",
             source: "elementary",
-            horizon_s: 2.75,
+            horizon_s: pace.horizon_s,
             time_scale_s: (self.mass / self.stiffness).sqrt(),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -118,8 +119,8 @@ impl Scene for DampedOscillator {
         vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.zeta == 0.0 }]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.oscillation().linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.oscillation().linear().theory(method, quantity, end_s)
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

@@ -15,7 +15,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -88,13 +88,14 @@ impl<T: Single> Motion<T> for ForcedOscillator {
 
 impl Scene for ForcedOscillator {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.oscillation().fastest() / 3.25);
         Info {
             about: "a driven oscillator: the force depends on time, so that the stage times of a method count",
             equation: r"m\,\ddot x = -k\,x - c\,\dot x + F\cos\Omega t",
             source: "elementary; the response as a divided difference of exponentials",
-            horizon_s: 2.75,
+            horizon_s: pace.horizon_s,
             time_scale_s: (self.mass / self.stiffness).sqrt().min(1.0 / self.drive.max(f64::MIN_POSITIVE)),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -114,8 +115,8 @@ impl Scene for ForcedOscillator {
         vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved }]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.oscillation().linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.oscillation().linear().theory(method, quantity, end_s)
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

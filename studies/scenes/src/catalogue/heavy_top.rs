@@ -16,7 +16,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::lagrange_top::LagrangeTop;
 use crate::special::scaled::Scaled;
 
@@ -37,6 +37,11 @@ scene_parameters! {
 }
 
 impl HeavyTop {
+    /// How fast it spins, or swings, 1/s.
+    fn rate(&self) -> f64 {
+        Vector3::from(self.omega).norm().max((self.mgl / self.inertia_1).sqrt())
+    }
+
     fn inertia(&self) -> [f64; 3] {
         [self.inertia_1, self.inertia_1, self.inertia_3]
     }
@@ -71,13 +76,14 @@ impl<T: Single> RigidMotion<T> for HeavyTop {
 
 impl Scene for HeavyTop {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 1.75, coarsest_steps: 8 }.at(self.rate() / 4.1);
         Info {
             about: "a top that precesses and nutates under gravity: the torque depends on the attitude",
             equation: r"I\,\dot{\omega} = I\omega\times\omega + m g l\,\mathbf e_3\times R^{T}\mathbf d,\quad \dot q = \tfrac12\,q\,\omega,\quad \mathbf d = (0, 0, -1)",
             source: "Lagrange 1788, by elliptic integrals",
-            horizon_s: 1.75,
-            time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(self.rate()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -88,10 +94,6 @@ impl Scene for HeavyTop {
         answerable::phase("heavy-top", ("omega", &self.omega), of_omega, end_s)?;
         let of_gravity = Scaled::of(self.mgl).over(Scaled::of(self.inertia_1)).sqrt().times(Scaled::of(end_s)).value();
         answerable::phase("heavy-top", ("mgl", &self.mgl), of_gravity.to_f64(), end_s)
-    }
-
-    fn gyroscopic_term_vanishes(&self) -> bool {
-        self.inertia_1 == self.inertia_3
     }
 
     /// Energy, and the vertical component of the angular momentum: the others are not conserved.

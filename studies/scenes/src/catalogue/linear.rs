@@ -20,7 +20,7 @@ use integrator::methods::MethodId;
 use nalgebra::{DMatrix, DVector};
 
 use crate::observation::Quantity;
-use crate::theory::{ExpectedOrder, StabilityLimit, Theory};
+use crate::theory::{StabilityLimit, Theory};
 
 /// z' = A z + b cos(W t), z = (q, v).
 pub(crate) struct Linear {
@@ -59,28 +59,27 @@ impl Linear {
         Linear { a, b, drive: parts.drive, start }
     }
 
-    /// What theory says of a method's error at the time `t_s`, with the constant |e_q| or |e_v|. Where the phase makes
-    /// the leading term vanish the order is one more.
+    /// What theory says of a method's error at the time `t_s`, with the constant |e_q| or |e_v|. It vanishes in some phases,
+    /// and along some motions.
     pub(crate) fn theory(&self, method: MethodId, quantity: Quantity, t_s: f64) -> Theory {
+        if !self.is_resolved(t_s) {
+            return Theory::usual(method);
+        }
         let n = self.start.len() / 2;
         let Some((error, size)) = self.error_constants(method, t_s) else { return Theory::usual(method) };
         let first = if quantity == Quantity::Position { 0 } else { n };
         let constant = error.rows(first, n).norm();
-        if size == 0.0 {
-            return Theory::exact("the local error vanishes along this motion");
-        }
-        if constant <= VANISHING * size * t_s {
-            let order = ExpectedOrder::Of(f64::from(method.order()) + 1.0);
-            return Theory { order, constant: None, reason: "the leading term vanishes in this phase" };
-        }
-        Theory::with_constant(
-            method,
-            constant,
-            "the method's local error, propagated by the linear equations of motion",
-        )
+        let reason = "the method's local error, propagated by the linear equations of motion";
+        Theory::with_constant(method, constant, reason).give_or_take(ROUNDING * size * t_s)
     }
 
-    /// e(T), and the size of d at the start; `None` where d is not known.
+    /// Whether the matrix exponential has digits at the time T: it loses as many as |Y| T has, and its powers must be numbers.
+    fn is_resolved(&self, t_s: f64) -> bool {
+        let size = self.extended().amax();
+        size * t_s <= MOST_PHASE && size.powi(5) * self.start.amax().max(1.0) < f64::MAX.sqrt()
+    }
+
+    /// e(T), and what the terms of d amount to at the start without their signs; `None` where d is not known.
     fn error_constants(&self, method: MethodId, t_s: f64) -> Option<(DVector<f64>, f64)> {
         let (dim, wide) = (self.start.len(), self.start.len() + 2);
         let extended = self.extended();
@@ -94,7 +93,7 @@ impl Linear {
         block.view_mut((0, dim), (dim, wide)).copy_from(&d);
         block.view_mut((dim, dim), (wide, wide)).copy_from(&extended);
         let flow = (block * t_s).exp();
-        let size = (&d * &y).norm();
+        let size = (d.abs() * y.abs()).norm();
         Some((flow.view((0, dim), (dim, wide)) * y, size))
     }
 
@@ -136,8 +135,11 @@ impl Linear {
     }
 }
 
-/// Below this part of T |d| an error constant is rounding of the matrix exponential.
-const VANISHING: f64 = 1e-12;
+/// Radians, or decay, after which eight digits of an error constant are left.
+const MOST_PHASE: f64 = 1e8;
+
+/// Rounding of the matrix exponential, as a part of T |d|.
+const ROUNDING: f64 = 1e-13;
 
 /// End of RK4's stability interval on the negative real axis: the root of 1 - x/2 + x^2/6 - x^3/24 = 0, so that R(-x) = 1.
 pub(crate) const RK4_REAL: f64 = 2.785_293_563_405_282;

@@ -16,7 +16,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::expm1;
 use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::{StabilityLimit, Theory};
@@ -97,13 +97,14 @@ impl<T: Single> Motion<T> for LinearDrag {
 
 impl Scene for LinearDrag {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.k() / 0.75);
         Info {
             about: "a projectile with drag -c v: the simplest force that depends on the velocity",
             equation: r"m\,\dot{\mathbf v} = m\,\mathbf g - c\,\mathbf v",
             source: "elementary (I. Newton, Principia (1687), book II, section I)",
-            horizon_s: 2.25,
+            horizon_s: pace.horizon_s,
             time_scale_s: 1.0 / self.k(),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -132,8 +133,8 @@ impl Scene for LinearDrag {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.linear().theory(method, quantity, end_s)
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

@@ -213,6 +213,14 @@ impl Oscillation {
         if phases.turns { phases.root.0.max(phases.drive.0) } else { phases.drive.0 }
     }
 
+    /// The fastest of its rates, 1/s: of the free motion's exponents, and of the driving force where there is one.
+    pub(crate) fn fastest(&self) -> f64 {
+        let number = |x: Scaled| x.value().to_f64();
+        let (g, w) = (number(self.decay), number(self.square).sqrt());
+        let free = if g > w { g + (g * g - w * w).sqrt() } else { w };
+        if number(self.force) == 0.0 { free } else { free.max(self.drive) }
+    }
+
     /// The same as a linear system.
     pub(crate) fn linear(&self) -> Linear {
         Linear::new(&Parts {

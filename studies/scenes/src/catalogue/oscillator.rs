@@ -17,7 +17,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::sinc;
 use crate::special::scaled::Scaled;
 use crate::theory::Law;
@@ -108,14 +108,15 @@ impl<T: Single> Motion<T> for Oscillator {
 
 impl Scene for Oscillator {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.omega() / 2.0);
         let time_scale_s = 1.0 / self.omega();
         Info {
             about: "a mass on a spring with a general phase: explicit Euler gains energy, semi-implicit Euler does not",
             equation: r"m\,\ddot x = -k\,x",
             source: "elementary",
-            horizon_s: 2.75,
+            horizon_s: pace.horizon_s,
             time_scale_s,
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -133,16 +134,20 @@ impl Scene for Oscillator {
         vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let Some([x, v]) = self.error_constants(method, self.info().horizon_s) else { return Theory::usual(method) };
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        let Some([x, v]) = self.error_constants(method, end_s) else { return Theory::usual(method) };
         let constant = if quantity == Quantity::Position { x } else { v };
         Theory::with_constant(method, constant, "leading term of the method's exact solution on x'' = -w^2 x")
     }
 
     fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
         let z = self.omega() * h_s;
-        let exponential =
-            |per_step: f64, reason| ExpectedGrowth { law: Law::Exponential, bounds: Some([per_step / h_s; 2]), reason };
+        let exponential = |per_step: f64, reason| ExpectedGrowth {
+            law: Law::Exponential,
+            bounds: Some([per_step / h_s; 2]),
+            seen_after_s: 0.0,
+            reason,
+        };
         let growth = match method {
             MethodId::ExplicitEuler => exponential((z * z).ln_1p(), "E grows by (1 + z^2) a step, z = w h"),
             MethodId::ImplicitEuler => exponential(-(z * z).ln_1p(), "E shrinks by 1 / (1 + z^2) a step, z = w h"),
@@ -153,16 +158,19 @@ impl Scene for Oscillator {
             MethodId::SemiImplicitEuler => ExpectedGrowth {
                 law: Law::Bounded,
                 bounds: Some(self.semi_implicit_band(h_s)),
+                seen_after_s: 0.0,
                 reason: "Q = v^2 + w^2 x^2 - w^2 h x v is conserved: E in [Q/2/(1 + z/2), Q/2/(1 - z/2)]",
             },
             MethodId::VelocityVerlet => ExpectedGrowth {
                 law: Law::Bounded,
                 bounds: Some(self.verlet_band(h_s)),
+                seen_after_s: 0.0,
                 reason: "v^2 + w^2 (1 - z^2/4) x^2 is conserved",
             },
             MethodId::ImplicitMidpoint => ExpectedGrowth {
                 law: Law::AtTheFloor,
                 bounds: None,
+                seen_after_s: 0.0,
                 reason: "quadratic invariants are conserved exactly",
             },
             _ => return None,

@@ -17,8 +17,8 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
-use crate::special::elementary::{asinh, atan, sech, sinc, sinh, versine_over_square};
+use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::special::elementary::{asinh, atan, nearest_turn, sech, sinc, sinh, versine_over_square};
 use crate::special::elliptic;
 use crate::special::jacobi::Modulus;
 use crate::special::scaled::Scaled;
@@ -55,6 +55,20 @@ impl Pendulum {
     /// w0 = sqrt(g / l), rad/s.
     fn frequency(&self) -> Scaled {
         Scaled::of(self.gravity).over(Scaled::of(self.length)).sqrt()
+    }
+
+    /// The time of a swing, or of a turn, s: long near the separatrix, and infinite on it.
+    fn period_s(&self) -> f64 {
+        let (w0, half) = (self.omega0().to_f64(), 0.5 * self.angle);
+        let p0 = self.omega / (2.0 * w0);
+        let (k2, mc) = (half.sin().powi(2) + p0 * p0, (half.cos() - p0) * (half.cos() + p0));
+        if mc > 0.0 {
+            4.0 * elliptic::complete_f(fx128::lit(mc)).to_f64() / w0
+        } else if mc < 0.0 {
+            2.0 * elliptic::complete_f(fx128::lit(-mc / k2)).to_f64() / (k2.sqrt() * w0)
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn omega0(&self) -> fx128 {
@@ -104,17 +118,6 @@ const FAST: f64 = 1e17;
 /// Below this size of sin(theta / 2) and theta' / (2 w0) the swing is harmonic: k^2 / 16 of MOST_RADIANS is below 2^-106.
 const SMALL: f64 = 1e-25;
 
-/// An angle in [-pi, pi] that differs by whole turns.
-fn nearest_turn(angle: fx128) -> fx128 {
-    if angle.0.abs() < 1e6 {
-        let two_pi = fx128::PI + fx128::PI;
-        return angle - (angle / two_pi).round() * two_pi;
-    }
-    // Their sine and cosine are reduced with all digits of pi.
-    let (sine, cosine) = angle.sin_cos();
-    sine.atan2(cosine)
-}
-
 /// theta and theta' / w0 of a rotation (mc < 0) or of the separatrix (mc = 0) in the positive sense, from theta / 2 at the
 /// start, at the phase w0 t.
 fn turning(half_angle: fx128, mc: fx128, k: fx128, phase: fx128) -> (fx128, fx128) {
@@ -156,13 +159,16 @@ impl<T: Single> Motion<T> for Pendulum {
 
 impl Scene for Pendulum {
     fn info(&self) -> Info {
+        // Faster round and round than to and fro, it is the turning that a step has to follow.
+        let scale_s = time_scale(self.omega0().to_f64().max(0.25 * self.omega.abs()));
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at((1.0 / scale_s) / 2.5);
         Info {
             about: "a pendulum with wide swings: libration, rotation, and the slow passage between them",
             equation: r"\ddot\theta = -\frac{g}{l}\sin\theta",
             source: "Jacobi's elliptic functions (E. T. Whittaker, Analytical Dynamics (1937), section 44)",
-            horizon_s: 2.75,
-            time_scale_s: 1.0 / self.omega0().to_f64(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: scale_s,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -196,11 +202,11 @@ impl Scene for Pendulum {
 
     /// Semi-implicit Euler is leapfrog with a velocity that is h a0 / 2 off: error / h is the motion's answer to such a
     /// kick at the start, less a(T) / 2 for the velocity.
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         if method != MethodId::SemiImplicitEuler {
             return Theory::usual(method);
         }
-        let (t, step) = (fx128::lit(self.info().horizon_s), fx128::lit(2.0_f64.powi(-30)));
+        let (t, step) = (fx128::lit(end_s), fx128::lit(2.0_f64.powi(-30)));
         let square = self.omega0() * self.omega0();
         let acceleration = |angle: fx128| -square * angle.sin_cos().0;
         let (start, rate) = (fx128::lit(self.angle), fx128::lit(self.omega));
@@ -224,6 +230,7 @@ impl Scene for Pendulum {
         (symplectic && balance == Balance::Energy).then_some(ExpectedGrowth {
             law: Law::Bounded,
             bounds: None,
+            seen_after_s: 8.0 * self.period_s(),
             reason: "a symplectic method keeps a modified energy",
         })
     }

@@ -18,7 +18,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::scaled::{Scaled, unit_quaternion};
 use crate::theory::Theory;
 
@@ -42,6 +42,11 @@ impl PrincipalAxisTorque {
     fn index(&self) -> usize {
         // Checked to be 0, 1 or 2; a cast of anything else stays in range.
         (self.axis as usize).min(2)
+    }
+
+    /// How fast it turns, or comes to turn, 1/s.
+    fn rate(&self) -> f64 {
+        self.omega.abs().max((self.torque.abs() / self.inertia[self.index()]).sqrt())
     }
 
     /// tau / I about the axis, rad/s^2.
@@ -90,13 +95,14 @@ impl<T: Single> RigidMotion<T> for PrincipalAxisTorque {
 
 impl Scene for PrincipalAxisTorque {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }.at(self.rate() / 1.25);
         Info {
             about: "spun up about a principal axis: no gyroscopic term, the Eulers' attitude is off by -+ alpha t h / 2",
             equation: r"I_k\,\dot\omega_k = \tau_k,\quad \dot q = \tfrac12\,q\,\omega_k\mathbf e_k",
             source: "elementary",
-            horizon_s: 2.25,
-            time_scale_s: 1.0 / self.omega.abs().max(f64::MIN_POSITIVE),
-            coarsest_steps: 4,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(self.rate()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -128,8 +134,8 @@ impl Scene for PrincipalAxisTorque {
         rigid::account_less_torque(self.inertia, self.inertia[self.index()], torque, omega, t, seen)
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let gained = self.torque / self.inertia[self.index()] * self.info().horizon_s;
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        let gained = self.torque / self.inertia[self.index()] * end_s;
         match (method, quantity) {
             (MethodId::VelocityVerlet | MethodId::Rk4 | MethodId::ImplicitMidpoint, Quantity::Attitude) => {
                 Theory::exact("the angle is a quadratic polynomial of t")

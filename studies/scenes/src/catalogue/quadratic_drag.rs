@@ -17,7 +17,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::{atan, expm1, log1p, log1p_over, sinc, sinh, tanh, versine_over_square};
 use crate::special::scaled::Scaled;
 use crate::theory::{ExpectedOrder, StabilityLimit, Theory};
@@ -52,6 +52,11 @@ impl QuadraticDrag {
     fn terminal(&self) -> (fx128, fx128) {
         let g = fx128::lit(self.gravity);
         ((g / self.k()).sqrt(), (g * self.k()).sqrt())
+    }
+
+    /// How fast the velocity changes, 1/s: towards the terminal velocity, or from a greater one.
+    fn rate(&self) -> f64 {
+        self.terminal().1.to_f64().max(self.k().to_f64() * self.v0.abs())
     }
 
     /// Time of the apex, s; none for a body that falls from the start.
@@ -166,13 +171,14 @@ impl<T: Single> Motion<T> for QuadraticDrag {
 
 impl Scene for QuadraticDrag {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.rate() / 0.78);
         Info {
             about: "a fall with drag -c v |v|: smooth while it falls, with a kink of the force at the apex of a throw",
             equation: r"m\,\dot v = m\,g - c\,v\,|v|",
             source: "E. J. Routh, Dynamics of a Particle (1898), article 117",
-            horizon_s: 2.75,
+            horizon_s: pace.horizon_s,
             time_scale_s: 1.0 / self.terminal().1.to_f64(),
-            coarsest_steps: 8,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -182,8 +188,8 @@ impl Scene for QuadraticDrag {
         answerable::range("quadratic-drag", self, &seen, end_s)
     }
 
-    fn breaks_s(&self) -> Vec<f64> {
-        self.apex_s().into_iter().collect()
+    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
+        self.apex_s().into_iter().filter(|&apex| apex <= end_s).collect()
     }
 
     fn is_periodic(&self) -> bool {
@@ -204,13 +210,14 @@ impl Scene for QuadraticDrag {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        let since = self.apex_s().map(|apex| self.info().horizon_s - apex).filter(|since| *since > 0.0);
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        let since = self.apex_s().map(|apex| end_s - apex).filter(|since| *since > 0.0);
         match (method, since) {
             (MethodId::Rk4, Some(since)) => {
                 let [x, v] = self.kink_constants(since);
                 Theory {
                     order: ExpectedOrder::Envelope(3.0),
+                    doubt: 0.0,
                     constant: Some(if quantity == Quantity::Position { x } else { v }),
                     reason: "v |v| has a kink at the apex: order 3, with a factor that depends on where in its step the apex \
                              falls; no arithmetic helps, and local orders scatter",

@@ -61,12 +61,6 @@ pub(crate) fn theory_of_constant_torque(method: MethodId, quantity: Quantity, ga
     }
 }
 
-/// Whether omega x I omega = 0: a free body then spins at a constant rate.
-pub(crate) fn spins_evenly(inertia: [f64; 3], omega: [f64; 3]) -> bool {
-    let omega = Vector3::from(omega);
-    omega.cross(&Vector3::from(inertia).component_mul(&omega)) == Vector3::zeros()
-}
-
 /// Rotational energy plus `potential`, and angular momentum in the world frame.
 pub(crate) fn account(
     inertia: [f64; 3],

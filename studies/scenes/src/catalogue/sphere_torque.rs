@@ -17,7 +17,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::sphere_torque::SphereTop;
 use crate::theory::Theory;
 
@@ -32,6 +32,13 @@ scene_parameters! {
         omega: [f64; 3] = [1.5, 0.5, -0.75], "rad/s", Finite;
         /// Torque, in the world frame.
         torque: [f64; 3] = [0.375, -0.75, 0.9375], "N m", Finite;
+    }
+}
+
+impl SphereTorque {
+    /// How fast it turns, or comes to turn, 1/s.
+    fn rate(&self) -> f64 {
+        Vector3::from(self.omega).norm().max((Vector3::from(self.torque).norm() / self.inertia).sqrt())
     }
 }
 
@@ -58,13 +65,14 @@ impl<T: Single> RigidMotion<T> for SphereTorque {
 
 impl Scene for SphereTorque {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.rate() / 1.75);
         Info {
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
             equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",
             source: "Zener 1932 (Landau-Zener), by power series, and by the adiabatic series of a slow turn",
-            horizon_s: 2.25,
-            time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(self.rate()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -77,17 +85,13 @@ impl Scene for SphereTorque {
         answerable::phase("sphere-torque", most, (started + gained) * end_s, end_s)
     }
 
-    fn gyroscopic_term_vanishes(&self) -> bool {
-        true
-    }
-
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_less_torque([self.inertia; 3], self.inertia, lit(self.torque), lit(self.omega), t, seen)
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         let at = |t: f64| -> Vector3<f64> { RigidMotion::<f64>::exact(self, t).omega_body };
-        let gained = (at(self.info().horizon_s) - at(0.0)).norm();
+        let gained = (at(end_s) - at(0.0)).norm();
         rigid::theory_of_constant_torque(method, quantity, gained)
     }
 }

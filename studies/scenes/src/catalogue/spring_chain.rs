@@ -15,7 +15,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene};
 use crate::special::elementary::sinc;
 use crate::special::scaled::{Scaled, exponent_of_largest, f64_times_two_to};
 use crate::theory::Law;
@@ -170,13 +170,14 @@ impl<T: Single> Motion<T> for SpringChain {
 
 impl Scene for SpringChain {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }.at(self.stiffest() / 5.6);
         Info {
             about: "sixteen masses and springs: the stiffest mode sets the step, whether it moves or not",
             equation: r"m\,\ddot x_i = k\,(x_{i-1} - 2x_i + x_{i+1}),\quad i = 1,\dots,16,\quad x_0 = x_{17} = 0",
             source: "normal modes (A. L. Fetter, J. D. Walecka, Theoretical Mechanics (1980), section 24)",
-            horizon_s: 2.25,
+            horizon_s: pace.horizon_s,
             time_scale_s: 1.0 / self.stiffest(),
-            coarsest_steps: 4,
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -201,8 +202,8 @@ impl Scene for SpringChain {
         ]
     }
 
-    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
-        self.linear().theory(method, quantity, self.info().horizon_s)
+    fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        self.linear().theory(method, quantity, end_s)
     }
 
     fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
@@ -212,7 +213,7 @@ impl Scene for SpringChain {
             MethodId::ImplicitMidpoint => (Law::AtTheFloor, "quadratic invariants are conserved exactly"),
             _ => return None,
         };
-        (balance == Balance::Energy).then_some(ExpectedGrowth { law, bounds: None, reason })
+        (balance == Balance::Energy).then_some(ExpectedGrowth { law, bounds: None, seen_after_s: 0.0, reason })
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

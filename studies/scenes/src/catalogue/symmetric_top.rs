@@ -18,7 +18,7 @@ use crate::invariants::{Balance, Entry};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::symmetric_top::SymmetricTop as Exact;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit};
@@ -81,13 +81,14 @@ impl<T: Single> RigidMotion<T> for SymmetricTop {
 
 impl Scene for SymmetricTop {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 1.6);
         Info {
             about: "a free body with an axis of symmetry: it precesses about the momentum at a constant rate",
             equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_1, I_3)",
             source: "elementary (Landau and Lifshitz, Mechanics, section 35)",
-            horizon_s: 2.25,
-            time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(Vector3::from(self.omega).norm()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
@@ -99,19 +100,17 @@ impl Scene for SymmetricTop {
         answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
-    fn gyroscopic_term_vanishes(&self) -> bool {
-        !self.nutates()
-    }
-
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account(self.inertia(), seen, fx128::ZERO, true, true)
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
         let known = method == MethodId::SemiImplicitEuler && balance == Balance::Energy && self.nutates();
+        let x = (self.inertia_3 / self.inertia_1 - 1.0) * self.omega[2] * h_s;
         known.then_some(ExpectedGrowth {
             law: Law::Exponential,
-            bounds: None,
+            bounds: None, // Before that exp(r t) - 1 is r t.
+            seen_after_s: 8.0 * h_s / (x * x).ln_1p(),
             reason: "omega_3 stays, omega_1^2 + omega_2^2 grows by 1 + x^2 a step, x = (I3/I1 - 1) omega_3 h",
         })
     }

@@ -15,7 +15,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Pace, Scene, time_scale};
 use crate::special::free_top::FreeTop;
 
 scene_parameters! {
@@ -59,23 +59,20 @@ impl<T: Single> RigidMotion<T> for TorqueFreeSpin {
 
 impl Scene for TorqueFreeSpin {
     fn info(&self) -> Info {
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 1.95);
         Info {
             about: "a free body with three unequal moments of inertia: only the gyroscopic term acts",
             equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_2, I_3)",
             source: "Jacobi 1849; attitude by Legendre's third integral (E. Celledoni et al., SIAM J. Sci. Comput. 30 (2008))",
-            horizon_s: 2.25,
-            time_scale_s: 1.0 / Vector3::from(self.omega).norm(),
-            coarsest_steps: 8,
+            horizon_s: pace.horizon_s,
+            time_scale_s: time_scale(Vector3::from(self.omega).norm()),
+            coarsest_steps: pace.coarsest_steps,
         }
     }
 
     fn check(&self) -> Result<(), Error> {
         rigid::check("torque-free-spin", self.inertia, self.attitude)?;
         rigid::check_free("torque-free-spin", &self.info(), &self.omega)
-    }
-
-    fn gyroscopic_term_vanishes(&self) -> bool {
-        rigid::spins_evenly(self.inertia, self.omega)
     }
 
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -2,6 +2,7 @@
 //!
 //! Error (measured): 1.2 eps relative in f64 and in double-double, wherever exp of the argument is finite.
 
+use faer::fx128;
 use integrator::real::Single;
 
 /// Sum of `first` and the terms that follow it, `term_k = next(term_{k-1}, k)`, until they no longer count.
@@ -100,6 +101,17 @@ pub fn tanh<T: Single>(x: T) -> T {
 pub fn asinh<T: Single>(x: T) -> T {
     let (size, one) = (x.abs(), T::lit(1.0));
     with_sign_of(log1p(size + x * x / (one + (one + x * x).sqrt())), x)
+}
+
+/// The angle in [-pi, pi] that differs from another by whole turns.
+pub fn nearest_turn(angle: fx128) -> fx128 {
+    if angle.0.abs() < 64.0 {
+        let two_pi = fx128::PI + fx128::PI;
+        return angle - (angle / two_pi).round() * two_pi;
+    }
+    // Their sine and cosine are reduced with more digits of pi.
+    let (sine, cosine) = integrator::Real::sin_cos(angle);
+    sine.atan2(cosine)
 }
 
 /// arctan x in [-pi/2, pi/2].

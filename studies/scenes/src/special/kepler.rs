@@ -3,7 +3,7 @@
 use faer::fx128;
 use integrator::real::{Real, Single};
 
-use super::elementary::x_minus_sin;
+use super::elementary::{nearest_turn, x_minus_sin};
 
 /// An eccentric anomaly with its sine and cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +28,7 @@ const MOST_STEPS: usize = 60;
 ///
 /// J. M. A. Danby, Fundamentals of Celestial Mechanics (1988), section 6.6.
 pub fn eccentric_anomaly<T: Single>(mean_anomaly: fx128, eccentricity: T) -> EccentricAnomaly<T> {
-    let two_pi = fx128::PI + fx128::PI;
-    let reduced = if mean_anomaly.0.abs() < 1e6 {
-        mean_anomaly - (mean_anomaly / two_pi).round() * two_pi
-    } else {
-        // Their sine and cosine are reduced with all digits of pi.
-        let (sine, cosine) = mean_anomaly.sin_cos();
-        sine.atan2(cosine)
-    };
+    let reduced = nearest_turn(mean_anomaly);
     let (e, mean) = (eccentricity, T::narrow(Real::abs(reduced)));
     let mut angle = T::lit(upper_bound(mean.to_f64(), e.to_f64()));
     for _ in 0..MOST_STEPS {

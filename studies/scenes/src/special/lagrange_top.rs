@@ -34,6 +34,7 @@ pub struct LagrangeTop {
 }
 
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 enum Motion {
     /// A top that sleeps upright or hangs.
     Steady,
@@ -130,7 +131,7 @@ impl LagrangeTop {
     ) -> (Rotation<fx128>, Vector3<fx128>) {
         let start = Spherical { attitude: self.attitude0, omega: self.omega0.xy() };
         let whole = if period.is_finite() { (t / period - fx128::from_f64(0.5)).round() } else { fx128::ZERO };
-        let now = if whole.0 < 2.0 {
+        let now = if whole.0.abs() < 2.0 {
             pull.after(start, t)
         } else {
             let mut at = pull.after(start, t - whole * period);
@@ -138,6 +139,8 @@ impl LagrangeTop {
             let [sum, difference] = halves(at.attitude);
             let (sum, difference) = (turn(sum, p), turn(difference, d));
             at.attitude = Rotation { w: sum.x, v: Vector3::new(difference.x, difference.y, sum.y) };
+            // psi = p - d turns the frame in which omega is seen.
+            at.omega = turn(at.omega, d - p);
             at
         };
         // The body turns about its axis in the frame of the series.

@@ -11,7 +11,6 @@ mod expansion;
 pub mod free_top;
 pub mod jacobi;
 pub mod kepler;
-pub mod kummer;
 pub mod lagrange_top;
 pub(crate) mod scaled;
 pub mod sphere_torque;

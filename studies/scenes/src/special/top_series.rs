@@ -32,13 +32,13 @@ pub(super) struct Pull {
 }
 
 impl Pull {
-    /// The state a time later (not negative).
+    /// The state a time later, or earlier.
     pub(super) fn after(&self, start: Spherical, time: fx128) -> Spherical {
         let (mut at, mut left) = (start, time);
-        while left.0 > 0.0 {
+        while left.0 != 0.0 {
             let series = self.series(&at);
             let h = step(&series);
-            let h = if h < left.0 { fx128::from_f64(h) } else { left };
+            let h = if h < left.0.abs() { fx128::from_f64(h.copysign(left.0)) } else { left };
             let [x, y, w, i, j, k] = series.map(|series| sum(&series, h));
             at.omega = Vector2::new(x, y);
             at.attitude = Rotation { w, v: Vector3::new(i, j, k) }.normalized();
