@@ -1,7 +1,7 @@
 //! n fixed steps from t = 0, at the times t = i h with i an integer: never a sum of steps.
 //! After every step the model's [`Model::contact`] may change the state at once: a bounce.
 
-use crate::model::{Method, Model, State};
+use crate::model::{Method, Model, State, Steps};
 use crate::real::Real;
 
 /// A constraint's rounding (the quaternion's norm) is removed after every so many steps: it costs nothing then, and a
@@ -27,16 +27,16 @@ pub fn advance<T: Real, M: Model<T>, A: Method<T, M>>(
     steps: u64,
 ) -> Result<State<M::Config>, Diverged> {
     let mut s = start;
-    let mut step = method.stepper(model);
+    let mut run = method.stepper(model);
     let mut done = 0;
     while done < steps {
         let block = SETTLE_EVERY.min(steps - done);
-        let before = (s, step.clone());
+        let (before, run_before) = (s, run.clone());
         for i in done..done + block {
-            s = model.contact(&s, step(T::lit(i as f64) * h, h, s));
+            s = model.contact(&s, run.next(T::lit(i as f64) * h, h, s));
         }
         if !s.is_finite() {
-            return Err(first_non_finite(before.1, model, before.0, h, done));
+            return Err(first_non_finite(run_before, model, before, h, done));
         }
         done += block;
         if block == SETTLE_EVERY {
@@ -59,10 +59,10 @@ pub fn integrate<T: Real, M: Model<T>, A: Method<T, M>>(
     mut observe: impl FnMut(u64, &State<M::Config>),
 ) -> Result<State<M::Config>, Diverged> {
     let mut s = start;
-    let mut step = method.stepper(model);
+    let mut run = method.stepper(model);
     observe(0, &s);
     for i in 0..steps {
-        s = model.contact(&s, step(T::lit(i as f64) * h, h, s));
+        s = model.contact(&s, run.next(T::lit(i as f64) * h, h, s));
         if !s.is_finite() {
             return Err(Diverged { step: i + 1 });
         }
@@ -76,7 +76,7 @@ pub fn integrate<T: Real, M: Model<T>, A: Method<T, M>>(
 
 #[cold]
 fn first_non_finite<T: Real, M: Model<T>>(
-    mut step: impl FnMut(T, T, State<M::Config>) -> State<M::Config>,
+    mut run: impl Steps<T, M>,
     model: &M,
     before: State<M::Config>,
     h: T,
@@ -86,7 +86,7 @@ fn first_non_finite<T: Real, M: Model<T>>(
     let mut taken = done;
     // The step first: a start that is not finite fails in step 1, as it does in `integrate`.
     loop {
-        s = model.contact(&s, step(T::lit(taken as f64) * h, h, s));
+        s = model.contact(&s, run.next(T::lit(taken as f64) * h, h, s));
         taken += 1;
         if !s.is_finite() {
             return Diverged { step: taken };

@@ -9,7 +9,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`model`] | [`State`], [`Model`], [`Method`]: what moves, by which law, by which rule |
+//! | [`model`] | [`State`], [`Model`], [`Method`], [`Steps`]: what moves, by which law, by which rule |
 //! | [`methods`] | the methods, the steps for rigid bodies only, what is known of each, choice at run time |
 //! | [`drive`] | n steps, observed or not; where a run leaves the finite numbers |
 //! | [`space`], [`pose`], [`rotation`] | R^n, R^3 x SO(3), unit quaternions |
@@ -140,7 +140,7 @@ pub mod rigid_body;
 pub mod rotation;
 pub mod space;
 
-pub use model::{Method, Model, State, Tangent};
+pub use model::{Method, Model, State, Steps, Tangent};
 pub use pose::{Pose, Twist};
 pub use real::{DoubleDouble, Real, Single};
 pub use rotation::Rotation;

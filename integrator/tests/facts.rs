@@ -324,7 +324,7 @@ fn conserved(facts: &Facts, start: &Kinematics<T, Fixed<T>>, end: &Kinematics<T,
     for kept in facts.conserves {
         let change = match kept {
             Conserved::Energy => (energy(end) - energy(start)).to_f64().abs(),
-            Conserved::Momentum => (momentum(end) - momentum(start)).map(|x| x.to_f64()).norm(),
+            Conserved::Momentum => (momentum(end) - momentum(start)).map(Single::to_f64).norm(),
             Conserved::MomentumNorm => {
                 let square = |at| integrator::rotation::dot(momentum(at), momentum(at));
                 (square(end) - square(start)).to_f64().abs()

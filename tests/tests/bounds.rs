@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use scenes::observation::Quantity;
 use scenes::run::{Outcome, Precision, Trajectory};
 
-const FILE: &[u8] = include_bytes!("../data/bounds.csv");
+const FILE: &[u8] = include_bytes!("../../studies/gate/data/bounds.csv");
 
 fn committed() -> Bounds {
     Bounds::parse(FILE, "bounds.csv").expect("the committed file is read")

@@ -87,10 +87,10 @@ fn run(document: &Path) {
     fs::write(&cargo, CARGO).expect("writable");
     assert!(Command::new("chmod").arg("+x").arg(&cargo).status().is_ok_and(|status| status.success()));
     // What a guide takes from the root of the workspace.
-    let data = temporary.path().join("tests/data");
+    let data = temporary.path().join("studies/gate/data");
     fs::create_dir_all(&data).expect("writable");
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
-    fs::copy(root.join("tests/data/bounds.csv"), data.join("bounds.csv")).expect("it is committed");
+    fs::copy(root.join("studies/gate/data/bounds.csv"), data.join("bounds.csv")).expect("it is committed");
     let path = format!("{}:{}", tools.display(), std::env::var("PATH").unwrap_or_default());
     for Example { place, commands, shown } in examples(document) {
         let kept = commands.lines().filter(|line| !NOT_RUN.iter().any(|(not, _)| not == line));

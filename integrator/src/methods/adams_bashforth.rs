@@ -1,6 +1,6 @@
 use crate::methods::facts::Facts;
 use crate::methods::rk4::Rk4;
-use crate::model::{Method, Model, State, Tangent};
+use crate::model::{Method, Model, State, Steps, Tangent};
 use crate::real::Real;
 use crate::space::{Space, Vector};
 
@@ -62,6 +62,26 @@ impl<const N: usize> Formula<N> {
     }
 }
 
+/// A run under way.
+struct Run<'a, M, V, const N: usize> {
+    formula: Formula<N>,
+    model: &'a M,
+    history: History<V, N>,
+}
+
+impl<M, V: Copy, const N: usize> Clone for Run<'_, M, V, N> {
+    fn clone(&self) -> Self {
+        Run { ..*self }
+    }
+}
+
+impl<T: Real, M: Model<T>, const N: usize> Steps<T, M> for Run<'_, M, Tangent<M, T>, N> {
+    #[inline(always)]
+    fn next(&mut self, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
+        self.formula.step(&mut self.history, self.model, (t, h), s)
+    }
+}
+
 macro_rules! adams_bashforth {
     ($($(#[$doc:meta])* $method:ident: $weights:expr, $denominator:literal, $start_up:ident, $facts:expr;)*) => {$(
         $(#[$doc])*
@@ -86,17 +106,16 @@ macro_rules! adams_bashforth {
         impl<T: Real, M: Model<T>> Method<T, M> for $method {
             #[inline(always)]
             fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
-                self.stepper(m)(t, h, s)
+                self.stepper(m).next(t, h, s)
             }
 
             #[inline(always)]
-            fn stepper<'a>(&'a self, m: &'a M) -> impl FnMut(T, T, State<M::Config>) -> State<M::Config> + Clone + 'a
+            fn stepper<'a>(&'a self, m: &'a M) -> impl Steps<T, M> + 'a
             where
                 T: 'a,
             {
-                let mut history = History { slopes: [(Vector::zero(), Vector::zero()); _], known: 0 };
                 let formula = Formula { weights: $weights, denominator: $denominator, start_up: StartUp::$start_up };
-                move |t, h, s| formula.step(&mut history, m, (t, h), s)
+                Run { formula, model: m, history: History { slopes: [(Vector::zero(), Vector::zero()); _], known: 0 } }
             }
         }
     )*};

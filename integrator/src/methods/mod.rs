@@ -57,6 +57,7 @@
 //! gives it a name, its claims in the rotation study and its laws in the tests.
 
 mod adams_bashforth;
+mod buss;
 mod composition;
 mod explicit_euler;
 mod facts;
@@ -66,7 +67,9 @@ mod implicit_euler;
 mod implicit_gyroscopic;
 mod implicit_midpoint;
 mod kutta3;
+mod local_linearization;
 mod momentum_midpoint;
+mod moser_veselov;
 mod restored_momentum;
 mod rk4;
 mod semi_implicit_euler;
@@ -76,6 +79,7 @@ pub use adams_bashforth::{
     AdamsBashforth2, AdamsBashforth2Filled, AdamsBashforth3, AdamsBashforth3Filled, AdamsBashforth4,
     AdamsBashforth4Filled, AdamsBashforth5, AdamsBashforth5Filled, MeanOfTwoSlopes,
 };
+pub use buss::{BussAugmented, BussSecondOrder};
 pub use composition::{
     SplittingKahanLi6, SplittingKahanLi8, SplittingSuzuki4, VerletKahanLi6, VerletKahanLi8, VerletSuzuki4,
 };
@@ -87,7 +91,9 @@ pub use implicit_euler::ImplicitEuler;
 pub use implicit_gyroscopic::ImplicitGyroscopic;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use kutta3::Kutta3;
+pub use local_linearization::LocalLinearization;
 pub use momentum_midpoint::MomentumMidpoint;
+pub use moser_veselov::MoserVeselov;
 pub use restored_momentum::RestoredMomentum;
 pub use rk4::Rk4;
 pub use semi_implicit_euler::SemiImplicitEuler;
@@ -307,6 +313,10 @@ rigid_list! {
 rigid_list! {
     /// The name of a step for rigid bodies that no study runs by itself yet.
     MoreRigidStep {
+        BussSecondOrder, WorldMomentum, World;
+        BussAugmented, WorldMomentum, World;
+        LocalLinearization, BodyOmega, Body;
+        MoserVeselov, BodyOmega, Body;
         SplittingSuzuki4, BodyOmega, Body;
         SplittingKahanLi6, BodyOmega, Body;
         SplittingKahanLi8, BodyOmega, Body;

@@ -10,7 +10,7 @@
 //! # impl<T: Real, M: Model<T>> Method<T, M> for Mine {
 //! #     fn step(&self, _: &M, _: T, _: T, s: State<M::Config>) -> State<M::Config> { s }
 //! # }
-//! Bounds::read("tests/data/bounds.csv")?.hold("semi-implicit-euler", &Flat(Mine))?.assert();
+//! Bounds::committed()?.hold("semi-implicit-euler", &Flat(Mine))?.assert();
 //! # Ok::<(), measure::error::Error>(())
 //! ```
 //!
@@ -52,6 +52,14 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// The bounds that are committed with this crate, wherever it is used.
+    ///
+    /// # Errors
+    /// None in a release: a test reads them.
+    pub fn committed() -> Result<Self, Error> {
+        Self::parse(include_bytes!("../data/bounds.csv"), "the committed bounds")
+    }
+
     /// Reads a file.
     ///
     /// # Errors

@@ -125,9 +125,19 @@ fn nodes<Q: Space<Scalar = fx128>>(motion: AnyMotion<'_, Q>, space: fx128, steps
     let node = |i: usize| {
         let t = space * lit(i as f64);
         let at = motion.exact(t);
-        let (before, a, after) = (rate(t - eps), motion.rate(t, &at), rate(t + eps));
-        let jerk = (after - before) * (lit(0.5) / eps);
-        let snap = (after + before - a * lit(2.0)) * (fx128::ONE / (eps * eps));
+        let (a, after) = (motion.rate(t, &at), rate(t + eps));
+        let [jerk, snap] = if i == 0 {
+            // What was before the start may be another motion: the drag of a body at rest has a kink there.
+            let [two, three] = [2.0, 3.0].map(|n| rate(t + eps * lit(n)));
+            [
+                after * lit(4.0) - a * lit(3.0) - two,
+                (a - two * lit(-2.0) - after * lit(2.5) - three * lit(0.5)) * lit(2.0),
+            ]
+        } else {
+            let before = rate(t - eps);
+            [after - before, after + before - a * lit(2.0)]
+        };
+        let (jerk, snap) = (jerk * (lit(0.5) / eps), snap * (fx128::ONE / (eps * eps)));
         let (half, part) = (lit(0.5), |n: f64| fx128::ONE / lit(n));
         let zero = Q::Tangent::zero();
         let sizes = [size(at.v).max(size(a) * scale_s) * scale_s, size(at.v).max(size(a) * scale_s)];

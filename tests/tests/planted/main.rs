@@ -184,8 +184,7 @@ impl Baseline {
 
 /// The committed bounds of errors and invariants in f64 on the scenes of this test.
 fn bounds() -> Bounds {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/bounds.csv");
-    let mut bounds = Bounds::read(path).expect("the committed bounds can be read");
+    let mut bounds = Bounds::committed().expect("the committed bounds can be read");
     let kinds = [Kind::Order, Kind::ErrorAtStep, Kind::ErrorConstant, Kind::Drift];
     bounds.rows.retain(|row| {
         let is_here = FLAT.contains(&row.scene.as_str()) || BODIES.contains(&row.scene.as_str());

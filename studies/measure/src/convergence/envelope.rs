@@ -28,7 +28,8 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
     // Rounding fills the fine end of a sweep in f32 and f64; the claims are made in double-double.
     let halves = coarse_top / fine_top;
     let exact = samples.iter().all(|s| s.error.is_some_and(|e| e <= 64.0 * first.precision.epsilon() * first.scale));
-    let holds = (1.0 / HALVES_DIFFER..=HALVES_DIFFER).contains(&halves) || exact;
+    // An error that falls faster is below its bound all the same.
+    let holds = halves >= 1.0 / HALVES_DIFFER || exact;
     OrderRow {
         scene: first.scene.clone(),
         method: first.method.clone(),
@@ -80,6 +81,10 @@ pub(super) fn envelope_claim(o: &OrderRow) -> Option<Claim> {
         // A sweep in which no event fell badly, or a run failed, shows nothing of the bound.
         None => Evidence::Undecided,
         Some(largest) if largest < bound * REACHED => Evidence::Undecided,
+        // The next term still covers the bound, and falls faster than it.
+        Some(largest) if largest > bound * (1.0 + NEXT_TERMS) && o.order.is_some_and(|order| order > p + 0.5) => {
+            Evidence::Undecided
+        }
         largest => Evidence::within(largest, [bound * REACHED, bound * (1.0 + NEXT_TERMS)]),
     };
     let id = format!("{}.{}.{}.envelope", o.scene, o.method, o.quantity.id());

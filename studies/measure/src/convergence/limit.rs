@@ -53,7 +53,9 @@ pub fn judge(o: &OrderRow) -> Evidence {
     let known = o.leading.zip(o.leading_doubt);
     match (known, o.constant.zip(o.constant_change)) {
         (Some((theory, doubt)), Some((value, change))) => {
-            let allowed = change + doubt + ROUNDING * theory;
+            // Three times the change covers a sweep that is not far into its limit, or whose largest error moves from one checkpoint
+            // to another. Errors are lengths: a limit below zero is that of an error that has yet to change its sign.
+            let (value, allowed) = (value.abs(), 3.0 * change + doubt + ROUNDING * theory);
             let seen = allowed <= RESOLVED * theory.max(value) || allowed + value <= VANISHED * o.coarse_constant;
             if (value - theory).abs() > allowed {
                 Evidence::Outside
@@ -72,7 +74,8 @@ fn without_constant(o: &OrderRow) -> Evidence {
     match o.verdict {
         Verdict::AsExpected | Verdict::Exact | Verdict::SuperConvergent => Evidence::Inside,
         _ if o.is_rounding => Evidence::Inside,
-        Verdict::Failed if o.coarsest_failure_h_s.is_some_and(|h| h > COARSE * o.time_scale_s) => Evidence::Undecided,
+        // The finest run finished, or even that was coarse: nothing is said of finer ones.
+        Verdict::Failed if o.coarsest_failure_h_s.is_none_or(|h| h > COARSE * o.time_scale_s) => Evidence::Undecided,
         Verdict::Failed => Evidence::Outside,
         Verdict::Capped | Verdict::NotAsymptotic | Verdict::AtTheFloor => match (o.finest_order, o.theory_order) {
             (Some(order), Some(p)) if order >= p - o.tolerance => Evidence::Inside,

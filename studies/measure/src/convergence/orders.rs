@@ -329,16 +329,17 @@ fn is_judged(o: &OrderRow) -> bool {
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
     // An envelope has a claim of its own.
     let theory = o.theory_constant.filter(|_| !o.theory_is_envelope)?;
-    // Where the next term is of second order, the extrapolation overshoots by two thirds of its change.
-    let bound = o.constant_change.map_or(f64::NAN, |change| change + o.theory_doubt + ROUNDING * theory);
+    // What is left where each change of the extrapolation is at least a quarter smaller than the one before.
+    let left = |change: f64| 3.0 * change;
+    let bound = o.constant_change.map_or(f64::NAN, |change| left(change) + o.theory_doubt + ROUNDING * theory);
     let texts = [
         format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
         format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
         o.constant.map_or_else(|| "none".to_owned(), |x| format!("{x:.9e}")),
-        format!("+- {bound:.1e}, the change of the last extrapolation"),
+        format!("+- {bound:.1e}, three times the change of the last extrapolation"),
     ];
     // Too few runs, too coarse ones, or errors at the floor have no window to extrapolate from.
-    let evidence = o.constant.map_or(Evidence::Undecided, |x| Evidence::near(Some(x), Some(theory), bound));
+    let evidence = o.constant.map_or(Evidence::Undecided, |x| Evidence::near(Some(x.abs()), Some(theory), bound));
     let id = format!("{}.{}.{}.constant", o.scene, o.method, o.quantity.id());
     Some(claim("convergence", &id, texts, [evidence]).on(&o.scene).by(&o.method))
 }

@@ -166,7 +166,7 @@ fn seen(sweep: &[&Row]) -> Seen {
         quantity: first.quantity.clone(),
         order: order.map(|o| o.0),
         theory_order: first.theory_order,
-        agrees: agrees(sweep, order.map(|o| o.0), &points),
+        agrees: agrees(sweep, order, &points),
         doubt: order.map_or(0.0, |o| o.1),
         finest: points.last().map(|p| p.1),
         reference: points.iter().rev().nth(2).map(|&(h, e)| (e, h)),
@@ -181,8 +181,12 @@ pub const ORDER_TOLERANCE: f64 = 0.05;
 /// Largest error of a motion that is reproduced exactly: 2^10 steps of a few roundings each, and as many for each radian.
 const EXACT: f64 = 1e-12;
 
+/// A change of the local order from one halving to the next by which a sweep is not in its limit.
+const UNSETTLED: f64 = 0.3;
+
 /// Whether a sweep shows what theory says: its order; the constant of it, where that is known; at least its order where it is not.
-fn agrees(sweep: &[&Row], order: Option<f64>, points: &[(f64, f64)]) -> Option<bool> {
+fn agrees(sweep: &[&Row], extrapolated: Option<(f64, f64)>, points: &[(f64, f64)]) -> Option<bool> {
+    let (order, doubt) = (extrapolated.map(|o| o.0), extrapolated.map_or(0.0, |o| o.1));
     let first = sweep[0];
     let finished = sweep.iter().all(|row| row.outcome == Outcome::Finished);
     let finest = points.last().map(|p| p.1);
@@ -206,9 +210,10 @@ fn agrees(sweep: &[&Row], order: Option<f64>, points: &[(f64, f64)]) -> Option<b
     let limit = limit(&samples, p, |_| FLOOR / 16.0);
     match (constant, limit) {
         (Some(constant), Some(limit)) => {
-            let right = (limit.value - constant).abs() <= limit.bound * (1.0 + 1e-6) + 1e-9 * constant;
-            if right || near { Some(right) } else { Some(false) }
+            let right = (limit.value.abs() - constant).abs() <= 3.0 * limit.bound + 1e-9 * constant;
+            Some(right)
         }
-        _ => order.map(|q| q >= p - ORDER_TOLERANCE),
+        // Local orders that differ by so much are none.
+        _ => order.filter(|_| doubt <= UNSETTLED).map(|q| q >= p - ORDER_TOLERANCE),
     }
 }

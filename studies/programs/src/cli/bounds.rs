@@ -1,6 +1,6 @@
 //! The flags of the binary, and what they ask for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ColorChoice, ValueEnum};
 
@@ -15,7 +15,7 @@ use measure::sweep::Progress;
 pub const WORDS: Words = Words {
     name: "bounds",
     about: "Checks every committed error bound, and the bounds themselves",
-    examples: "bounds                                             every row of tests/data/bounds.csv
+    examples: "bounds                                             every committed bound
         bounds --quick                                     f64, the first preset of each scene: orders, errors at a step, evaluations
         bounds --format csv > now.csv                      every verdict, for a program
         bounds --junit target/bounds.xml                   the table, and JUnit's XML for a CI server
@@ -28,9 +28,9 @@ pub const WORDS: Words = Words {
 /// What to check, and how to tell it.
 #[derive(Args, Clone, Debug)]
 pub struct Flags {
-    /// The file of bounds
-    #[arg(long, value_name = "FILE", default_value = "tests/data/bounds.csv")]
-    bounds: PathBuf,
+    /// The file of bounds [default: the committed bounds; for --update studies/gate/data/bounds.csv]
+    #[arg(long, value_name = "FILE")]
+    bounds: Option<PathBuf>,
 
     /// Only rows of this scene, or scene/preset; may be given again
     #[arg(long, value_name = "ID")]
@@ -100,6 +100,9 @@ enum Format {
     Json,
 }
 
+/// The committed bounds, from the root of the workspace.
+const COMMITTED: &str = "studies/gate/data/bounds.csv";
+
 /// Does what the flags ask for.
 ///
 /// # Errors
@@ -112,12 +115,14 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
         return ending(comparison.text(), !comparison.is_worse());
     }
     let progress = Progress::on_terminal("bounds", cli.quiet);
-    let bounds = Bounds::read(&cli.bounds)?;
     if cli.update {
+        let path = cli.bounds.as_deref().unwrap_or(Path::new(COMMITTED));
+        let bounds = Bounds::read(path)?;
         let update = update::update(&bounds, cli.reason.as_deref(), cli.theory, &progress)?;
-        reports::files::write_file(&cli.bounds, read::write(&update.rows)?)?;
+        reports::files::write_file(path, read::write(&update.rows)?)?;
         return ending(update.diff(), update.kept.is_empty());
     }
+    let bounds = cli.bounds.as_ref().map_or_else(Bounds::committed, Bounds::read)?;
     if cli.audit {
         let audit = audit::audit(&bounds, &progress)?;
         return ending(audit.text(), audit.is_good());
@@ -152,7 +157,8 @@ fn chosen<'a>(cli: &Flags, bounds: &'a Bounds) -> Result<Vec<&'a Row>, Error> {
     let rows: Vec<&Row> = bounds.rows.iter().filter(wanted).collect();
     if rows.is_empty() {
         let message = "no row of the file is chosen: a gate without rows holds nothing".to_owned();
-        return Err(Error::plan(cli.bounds.display().to_string(), message));
+        let place = cli.bounds.as_ref().map_or_else(|| "bounds".to_owned(), |path| path.display().to_string());
+        return Err(Error::plan(place, message));
     }
     Ok(rows)
 }

@@ -95,7 +95,8 @@ impl<T: Single> RigidMotion<T> for PrincipalAxisTorque {
 
 impl Scene for PrincipalAxisTorque {
     fn info(&self) -> Info {
-        let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }.at(self.rate() / 1.25);
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }
+            .at((self.omega.abs() + self.torque.abs() / self.inertia[self.index()] * 2.25) / 2.94);
         Info {
             about: "spun up about a principal axis: no gyroscopic term, the Eulers' attitude is off by -+ alpha t h / 2",
             equation: r"I_k\,\dot\omega_k = \tau_k,\quad \dot q = \tfrac12\,q\,\omega_k\mathbf e_k",

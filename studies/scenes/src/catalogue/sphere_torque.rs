@@ -65,7 +65,8 @@ impl<T: Single> RigidMotion<T> for SphereTorque {
 
 impl Scene for SphereTorque {
     fn info(&self) -> Info {
-        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.rate() / 1.75);
+        let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }
+            .at((Vector3::from(self.omega).norm() + Vector3::from(self.torque).norm() / self.inertia * 2.25) / 5.5);
         Info {
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
             equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",

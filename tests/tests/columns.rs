@@ -1,0 +1,118 @@
+//! The page of CSV columns is what the row types say of themselves.
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace").to_owned()
+}
+
+/// A file of a report, what one row of it is, and the type that is written.
+const FILES: [(&str, &str, &str, &str); 11] = [
+    ("convergence.csv", "the errors of one quantity in one run", "studies/measure/src/convergence/mod.rs", "Row"),
+    ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/orders.rs", "OrderRow"),
+    ("drift.csv", "one invariant over a stretch of a long run", "studies/measure/src/drift/mod.rs", "Row"),
+    ("growth-laws.csv", "the law by which one error grows", "studies/measure/src/drift/laws.rs", "LawRow"),
+    ("rotation.csv", "one measured number of a scheme for rigid bodies", "studies/measure/src/rotation/row.rs", "Row"),
+    ("adequacy.csv", "one run of a model", "studies/measure/src/adequacy/mod.rs", "Row"),
+    (
+        "stability.csv",
+        "one limit, one cell of a map or one point of a picture",
+        "studies/measure/src/stability/mod.rs",
+        "Row",
+    ),
+    ("tradeoff.csv", "one run with its error and its cost", "studies/measure/src/tradeoff/mod.rs", "Row"),
+    ("ensemble.csv", "the errors of one quantity over all starts", "studies/measure/src/ensemble/mod.rs", "Row"),
+    ("*-claims.csv", "one claim with its verdict", "reports/src/claim.rs", "Claim"),
+    ("bounds.csv", "one committed bound", "studies/gate/src/row.rs", "Row"),
+];
+
+/// Name, type and documentation of the fields of a struct, as its source has them. A field that is not serialized is left out.
+fn fields(source: &str, name: &str) -> Vec<[String; 3]> {
+    let head = format!("pub struct {name} {{\n");
+    let body = source.split(&head).nth(1).unwrap_or_else(|| panic!("no struct {name}"));
+    let body = body.split("\n}").next().unwrap_or_default();
+    let (mut found, mut doc, mut skipped) = (Vec::new(), Vec::new(), false);
+    for line in body.lines().map(str::trim) {
+        if let Some(text) = line.strip_prefix("///") {
+            doc.push(text.trim().to_owned());
+        } else if line.starts_with("#[serde(skip") {
+            skipped = true;
+        } else if let Some((name, kind)) = line.strip_prefix("pub ").and_then(|field| field.split_once(": ")) {
+            if !std::mem::take(&mut skipped) {
+                found.push([name.to_owned(), kind.trim_end_matches(',').to_owned(), doc.join(" ")]);
+            }
+            doc.clear();
+        }
+    }
+    found
+}
+
+/// What a cell holds, in words.
+fn cell(kind: &str) -> String {
+    let (inner, may_be_empty) = match kind.strip_prefix("Option<").and_then(|kind| kind.strip_suffix('>')) {
+        Some(inner) => (inner, ", or empty"),
+        None => (kind, ""),
+    };
+    let word = match inner {
+        "f64" => "number",
+        "u64" | "usize" => "whole number",
+        "bool" => "true or false",
+        "String" => "text",
+        _ => "name",
+    };
+    format!("{word}{may_be_empty}")
+}
+
+fn page() -> String {
+    let mut page = String::from(
+        "# Columns of the CSV files\n\n\
+         Each file has one header line and one record per line. Numbers are written so that they read back exactly. An empty cell is a \
+         value that does not exist, for example the error of a run that diverged; it is never zero. The suffix of a name is its unit: \
+         `_s` seconds, `_m` metres. `schema` in `manifest.json` is raised when a column changes its name or meaning.\n",
+    );
+    for (file, what, source, name) in FILES {
+        let text = std::fs::read_to_string(root().join(source)).unwrap_or_else(|error| panic!("{source}: {error}"));
+        page += &format!("\n## {file}\n\nOne record is {what}.\n\n| column | cell | meaning |\n|---|---|---|\n");
+        for [column, kind, doc] in fields(&text, name) {
+            page += &format!("| `{column}` | {} | {} |\n", cell(&kind), doc.replace('|', "\\|"));
+        }
+    }
+    page
+}
+
+// Fails if: a column is added, renamed or documented otherwise without the page.
+#[test]
+fn the_page_of_columns_is_what_the_row_types_say() {
+    let path = root().join("reports/guides/columns.md");
+    let page = page();
+    if std::env::var_os("UPDATE_COLUMNS").is_some() {
+        std::fs::write(&path, &page).expect("the page can be written");
+    }
+    let committed = std::fs::read_to_string(&path).unwrap_or_default();
+    let remedy = "run `UPDATE_COLUMNS=1 cargo test --release -p verification --test columns`";
+    assert!(committed == page, "reports/guides/columns.md is not what the row types say; {remedy}");
+}
+
+// Fails if: a column has no documentation, or a file of the list has other columns than the program writes.
+#[test]
+fn every_column_is_documented_and_is_the_one_that_is_written() {
+    for (file, _, source, name) in FILES {
+        let text = std::fs::read_to_string(root().join(source)).expect("a source file");
+        let fields = fields(&text, name);
+        assert!(fields.len() > 3, "{file}");
+        assert!(
+            fields.iter().all(|[_, _, doc]| doc.ends_with('.') || !doc.is_empty()),
+            "{file}: a column without words"
+        );
+    }
+    let committed = std::fs::read_to_string(root().join("studies/gate/data/bounds.csv")).expect("the committed bounds");
+    let header = committed.lines().find(|line| !line.starts_with('#')).expect("a header");
+    let text = std::fs::read_to_string(root().join("studies/gate/src/row.rs")).expect("a source file");
+    let columns: Vec<String> = fields(&text, "Row").into_iter().map(|[name, _, _]| name).collect();
+    for column in header.split(',') {
+        assert!(
+            columns.iter().any(|known| known == column),
+            "bounds.csv has a column '{column}' that no field explains"
+        );
+    }
+}
