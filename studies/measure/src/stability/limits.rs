@@ -111,7 +111,7 @@ fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
     let scene = stepping.scene.scene();
     let scale = scene.info().time_scale_s;
     let (found, trial) = (measure(stepping, theory), Trial::of(stepping, theory));
-    let closed = scene.stability_limit(stepping.method);
+    let closed = scene.expected_limit(stepping.method);
     let (low, high, beyond) = match found {
         _ if !trial.sees => (None, None, f64::NAN),
         Found::NoStep { tried_s } => (None, Some(tried_s), tried_s),
