@@ -48,7 +48,9 @@ pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
 
 fn pairs(rows: &[Row]) -> Vec<Pair> {
     let finished = |row: &&Row| row.outcome == Outcome::Finished;
-    let in_f64 = rows.iter().filter(finished).filter(|row| row.precision == Precision::F64);
+    // A step longer than the time scale may be unstable: what it carries along is no law of the arithmetic.
+    let is_fine = |row: &&Row| row.h_s <= row.time_scale_s;
+    let in_f64 = rows.iter().filter(finished).filter(is_fine).filter(|row| row.precision == Precision::F64);
     let twin = |row: &Row| {
         let same = |other: &&Row| {
             other.precision == Precision::F32 && other.steps == row.steps && other.quantity == row.quantity
