@@ -146,6 +146,7 @@ fn every_study_runs_with_a_method_a_step_and_a_scene_that_are_one_file_and_one_r
     }
     let chosen = ["--quick", "--scene", SCENE, "--scene", "torque-free-spin", "--method", METHOD];
     PROGRAMS.iter().filter(|program| **program != "report").for_each(|program| run(program, &chosen));
+    run("ensemble", &["--quick", "--scene", "kepler", "--method", METHOD, "--members", "64"]);
     run("tradeoff", &["--scene", SCENE, "--method", METHOD, "--error", "1e-3"]);
     run("stability", &["--scene", SCENE, "--method", METHOD]);
     run("bounds", &["--quick"]);
