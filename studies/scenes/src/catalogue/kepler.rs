@@ -138,6 +138,11 @@ impl Scene for Kepler {
         answerable::range("kepler", self, &seen, end_s)
     }
 
+    /// A parameter that is rounded to f32 is wrong from the start, and no step makes that smaller.
+    fn rounding_accumulates(&self) -> bool {
+        [self.mu, self.semi_major, self.eccentricity, self.anomaly].iter().all(|&x| f64::from(x as f32) == x)
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let mass = fx128::lit(self.mass);
