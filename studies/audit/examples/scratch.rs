@@ -1,13 +1,17 @@
+//! Development only.
+use audit::checks;
 fn main() {
     for path in std::env::args().skip(1) {
         match audit::load(path.as_ref(), &audit::Choices::default()) {
             Err(e) => println!("ERROR {e}"),
             Ok(t) => {
-                println!("{path}\trows {}\t{}\tp {:?} v {:?} q {:?} w {:?} {:?} a {} ad {}\tties {}\tmisfit {:?}\tunused {:?}", t.rows(), t.rounding,
-                    t.position.as_ref().map(|p| p.axes.len()), t.velocity.as_ref().map(|p| p.axes.len()), t.attitude.as_ref().map(|a| a.reading.name()),
-                    t.omega.is_some(), t.omega_frame, t.angle.is_some(), t.angle_rate.is_some(), t.ties.len(),
-                    t.time[1], t.unused);
-                if std::env::var("V").is_ok() { for r in &t.recognised { println!("   {:?} {:?}: {} ({})", r.role, r.columns, r.reading, r.reason); } for x in &t.ties { println!("   TIE {} {:?}", x.what, x.readings); } }
+                println!("{path}");
+                let (clock, mut f) = checks::time::check(&t);
+                f.extend(checks::reading(&t));
+                f.extend(checks::kinematics::check(&t, &clock, None));
+                f.extend(checks::clamps::check(&t));
+                f.extend(checks::conservation::check(&t, [1.25, 0.8125, 1.5625].into()));
+                for x in f { println!("   {} {} {} | {}", x.verdict.id(), x.id, x.value, x.evidence); }
             }
         }
     }

@@ -1,6 +1,8 @@
 //! Judges a trajectory that another program computed, from its file.
 
+pub mod checks;
 pub mod error;
+pub mod finding;
 pub mod read;
 pub mod trajectory;
 

@@ -9,7 +9,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 pub use dialect::{Dialect, Separator};
-pub(crate) use rows::Digits;
+pub use rows::Digits;
 
 use crate::error::Error;
 

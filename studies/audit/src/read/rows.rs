@@ -15,17 +15,17 @@ const COUNTED: usize = 4096;
 
 /// With how many digits a column was printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Digits {
+pub struct Digits {
     /// Most significant digits in a cell.
-    pub(crate) significant: u32,
+    pub significant: u32,
     /// Most digits behind the decimal mark, less the exponent.
-    pub(crate) decimals: i32,
+    pub decimals: i32,
     /// Whether every cell has as many digits behind the decimal mark, and none an exponent.
-    pub(crate) fixed: bool,
+    pub fixed: bool,
     /// Whether every value is a number of single precision.
-    pub(crate) single: bool,
+    pub single: bool,
     /// Whether some cell is no whole number.
-    pub(crate) fraction: bool,
+    pub fraction: bool,
 }
 
 impl Digits {

@@ -297,7 +297,7 @@ fn decide(
     if let Some(frame) = choices.omega_frame {
         scored.retain(|s| s.frame == frame);
     }
-    let floor = floor(table, attitude, omega);
+    let floor = floor(out.rounding);
     let best = scored[0].misfit.max(floor);
     // Among those as good, the usual one: they were made in that order and the frame that the name says is preferred.
     let named = match out.named_frame {
@@ -306,7 +306,13 @@ fn decide(
         None => None,
     };
     let mut tied: Vec<Scored> = scored.iter().filter(|s| s.misfit < CLEARLY * best).copied().collect();
-    tied.sort_by_key(|s| (s.reading.inverse, named.is_some_and(|n| n != s.frame)));
+    tied.sort_by_key(|s| (s.reading.inverse, named.is_some_and(|n| n != s.frame), s.frame == OmegaFrame::Body));
+    if scored.iter().all(|s| s.turning < 1e-12) {
+        "the body does not turn".clone_into(why);
+        let reading = Scored { frame: if named == Some(OmegaFrame::Body) { OmegaFrame::Body } else { OmegaFrame::World }, ..usual(&scored) };
+        out.omega_frame = reading.frame;
+        return reading.reading;
+    }
     let unexplained = best > 0.3;
     let chosen = if unexplained { by_factor(&scored) } else { tied[0] };
     out.scored = Some(chosen);
@@ -318,7 +324,7 @@ fn decide(
         None => format!("q' = q omega / 2 to {:.1e} of the turning", chosen.misfit),
     };
     let differs = |s: &&Scored| {
-        s.reading != chosen.reading || s.omega_scale != chosen.omega_scale || (s.frame != chosen.frame && chosen.frames_differ > 1e-9)
+        s.reading != chosen.reading || s.omega_scale != chosen.omega_scale || (s.frame != chosen.frame && chosen.frames_differ > chosen.misfit.max(1e-6))
     };
     let open: Vec<&Scored> = tied.iter().filter(differs).collect();
     if !unexplained && !open.is_empty() {
@@ -333,6 +339,12 @@ fn decide(
     chosen.reading
 }
 
+/// The reading that programs use most.
+fn usual(scored: &[Scored]) -> Scored {
+    let usual = |s: &&Scored| !s.reading.inverse && s.omega_scale == 1.0;
+    scored.iter().find(usual).copied().unwrap_or(scored[0])
+}
+
 /// Where no reading fits as it stands: the usual reading whose angular velocity is right but for a factor.
 fn by_factor(scored: &[Scored]) -> Scored {
     let best = scored.iter().map(|s| s.free_misfit).fold(f64::INFINITY, f64::min);
@@ -341,9 +353,12 @@ fn by_factor(scored: &[Scored]) -> Scored {
 }
 
 /// The part of the turning in a step that the digits of the file leave open.
-fn floor(table: &Table, attitude: &Group, omega: &Group) -> f64 {
-    let digits = |g: &Group| g.columns.iter().map(|i| table.columns[*i].digits.significant).max().unwrap_or(17);
-    10.0_f64.powi(-(digits(attitude).min(digits(omega)).min(12) as i32) + 1).max(1e-9)
+fn floor(rounding: Rounding) -> f64 {
+    match rounding {
+        Rounding::Double => 1e-9,
+        Rounding::Single => 1e-5,
+        Rounding::Decimals(n) | Rounding::Significant(n) => 10.0_f64.powi(1 - n.min(12) as i32),
+    }
 }
 
 /// An attitude without an angular velocity: the usual reading, and a tie where the names leave another open.

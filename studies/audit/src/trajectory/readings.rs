@@ -31,6 +31,8 @@ pub(crate) struct Scored {
     pub(crate) free_misfit: f64,
     /// That factor.
     pub(crate) factor: f64,
+    /// Mean square of the turning of a step, rad^2.
+    pub(crate) turning: f64,
     /// How far the readings in world and in body components differ in this file.
     pub(crate) frames_differ: f64,
 }
@@ -82,8 +84,8 @@ pub(crate) fn score(table: &Table, time: &[f64], att: &Group, omega: &Group) -> 
                 .map(|p| (p.q0.rotate(p.w0) - p.w0).norm() / p.w0.norm().max(f64::MIN_POSITIVE))
                 .fold(0.0, f64::max);
             for (frame, r) in [(OmegaFrame::World, world), (OmegaFrame::Body, body)] {
-                let [misfit, free_misfit, factor] = r;
-                all.push(Scored { reading, frame, omega_scale, misfit, free_misfit, factor, frames_differ });
+                let [misfit, free_misfit, factor, turning] = r;
+                all.push(Scored { reading, frame, omega_scale, misfit, free_misfit, factor, turning, frames_differ });
             }
         }
     }
@@ -101,7 +103,7 @@ struct Pair {
 
 /// rms of the turning in a step less that by the mean angular velocity (with the first commutator of Magnus' series, which
 /// leaves an error of h^3), relative to the rms of the larger of the two; the same after the best factor; the factor.
-fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 3] {
+fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 4] {
     let mut vectors = Vec::with_capacity(steps.len());
     for p in steps {
         let (turned, sign) = match frame {
@@ -116,7 +118,7 @@ fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 3] {
         }
     }
     if vectors.len() * 2 < steps.len() {
-        return [f64::INFINITY, f64::INFINITY, 1.0];
+        return [f64::INFINITY, f64::INFINITY, 1.0, 1.0];
     }
     let sum = |f: &dyn Fn(&(Vector3<f64>, Vector3<f64>)) -> f64| vectors.iter().map(f).sum::<f64>();
     let (turned, told) = (sum(&|(a, _)| a.norm_squared()), sum(&|(_, b)| b.norm_squared()));
@@ -124,5 +126,5 @@ fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 3] {
     let missed = sum(&|(a, b)| (a - b).norm_squared());
     let factor = if told > 0.0 { sum(&|(a, b)| a.dot(b)) / told } else { 1.0 };
     let freely = sum(&|(a, b)| (a - b * factor).norm_squared());
-    [(missed / size).sqrt(), (freely / turned.max(f64::MIN_POSITIVE)).sqrt(), factor]
+    [(missed / size).sqrt(), (freely / turned.max(f64::MIN_POSITIVE)).sqrt(), factor, size / vectors.len() as f64]
 }
