@@ -5,9 +5,6 @@ use nalgebra::Vector3;
 use crate::finding::{Check, Finding, Verdict};
 use crate::trajectory::{Trajectory, Vectors};
 
-/// Rows that must stand at the same largest value.
-const PLATEAU: usize = 2;
-
 /// Clamped angular and linear velocities.
 pub fn check(t: &Trajectory) -> Vec<Finding> {
     let mut found = Vec::new();
@@ -33,23 +30,24 @@ fn clamp(t: &Trajectory, v: &Vectors, what: &'static str, unit: &'static str, id
         let evidence = format!("|{what}| falls from {:.4} to {:.4} {unit} in the first interval and by at most {:.1e} of itself later", norms[0], norms[1], later);
         return Some(finding(norms[1], evidence));
     }
-    if let Some((value, rows)) = plateau(&norms, v.resolution.absolute) {
+    if let Some((value, rows)) = plateau(&norms, 3, v.resolution.absolute) {
         return Some(finding(value, format!("|{what}| stands at {value:.4} {unit} in {rows} rows, and nowhere above")));
     }
     (0..3).find_map(|axis| {
-        let component: Vec<f64> = v.values.iter().map(|v: &Vector3<f64>| v[axis].abs()).collect();
-        let (value, rows) = plateau(&component, v.resolution.absolute)?;
+        let sign = v.values.iter().map(|v: &Vector3<f64>| v[axis]).max_by(|a, b| a.abs().total_cmp(&b.abs()))?.signum();
+        let component: Vec<f64> = v.values.iter().map(|v| v[axis] * sign).collect();
+        let (value, rows) = plateau(&component, 2, v.resolution.absolute)?;
         // The other components must go on changing.
         Some(finding(value, format!("component {} of the {what} stands at {value:.4} {unit} in {rows} rows of {}, and nowhere above", ["x", "y", "z"][axis], t.rows())))
     })
 }
 
 /// The largest value, if the series rises to it and stands there for some rows but not for most of the file.
-fn plateau(series: &[f64], resolution: f64) -> Option<(f64, usize)> {
+fn plateau(series: &[f64], least: usize, resolution: f64) -> Option<(f64, usize)> {
     let largest = series.iter().copied().fold(0.0, f64::max);
     let stands = |x: &f64| (largest - x) <= 2.0 * resolution;
     let rows = series.iter().filter(|x| stands(x)).count();
-    let runs = series.windows(PLATEAU).any(|w| w.iter().all(stands));
+    let runs = series.windows(least).any(|w| w.iter().all(stands));
     let first = series.iter().position(stands)?;
     let smallest = series.iter().copied().fold(f64::INFINITY, f64::min);
     let moves = largest - smallest > 0.02 * largest;

@@ -25,11 +25,26 @@ pub(super) fn trajectory(table: &Table, layout: &Layout, choices: &Choices) -> R
         named_frame: None,
     };
     take_time(&mut out, table, layout)?;
+    let named = layout.get(Role::Time).and_then(|g| g.unit.clone());
+    let by_name = named.map(|(factor, unit)| (factor, unit.clone(), format!("unit {unit} in the name"))).or_else(|| epoch(&out));
+    if let Some((factor, ..)) = &by_name {
+        scale_time(&mut out, *factor);
+    }
     let vectors = |role: Role| layout.get(role).map(|g| take_vectors(table, g, rounding, g.unit.as_ref().map_or(1.0, |u| u.0)));
     out.position = vectors(Role::Position);
     out.velocity = vectors(Role::Velocity);
     out.angle = layout.get(Role::Angle).map(|g| scalars(table, g, rounding, true));
     out.angle_rate = layout.get(Role::AngleRate).map(|g| scalars(table, g, rounding, false));
+    let (_, unit, why) = by_name.unwrap_or_else(|| {
+        let by_numbers = unnamed_time(&out, table, layout);
+        scale_time(&mut out, by_numbers.0);
+        by_numbers
+    });
+    if let Some(group) = layout.get(Role::Time) {
+        let mut read = recognised(table, group, unit);
+        read.reason = format!("{}; {why}", read.reason);
+        out.recognised.push(read);
+    }
     take_attitude(&mut out, table, layout, choices);
     for role in [Role::Position, Role::Velocity, Role::Angle, Role::AngleRate] {
         if let Some(group) = layout.get(role) {
@@ -43,7 +58,6 @@ pub(super) fn trajectory(table: &Table, layout: &Layout, choices: &Choices) -> R
             out.recognised.push(recognised(table, group, unit));
         }
     }
-    scale_time(&mut out, layout, table);
     let used: Vec<usize> = layout.groups.iter().filter(|g| g.role != Role::Other).flat_map(|g| g.columns.clone()).collect();
     out.unused = (0..table.columns.len()).filter(|i| !used.contains(i)).map(|i| table.columns[i].name.clone()).collect();
     if out.position.is_none() && out.attitude.is_none() && out.angle.is_none() && out.velocity.is_none() && out.omega.is_none() {
@@ -134,41 +148,51 @@ fn take_time(out: &mut Trajectory, table: &Table, layout: &Layout) -> Result<(),
     Ok(())
 }
 
-/// The unit of time: by its name, by the size of an epoch, or by x' = v.
-fn scale_time(out: &mut Trajectory, layout: &Layout, table: &Table) {
-    let Some(group) = layout.get(Role::Time) else { return };
-    let (factor, unit, why) = match &group.unit {
-        Some((factor, unit)) => (*factor, unit.clone(), format!("unit {unit} in the name")),
-        None => unnamed_time(out),
-    };
+fn scale_time(out: &mut Trajectory, factor: f64) {
     for t in &mut out.time {
         *t *= factor;
     }
     out.time_resolution *= factor;
-    let mut read = recognised(table, group, unit);
-    read.reason = format!("{}; {why}", read.reason);
-    out.recognised.insert(0, read);
 }
 
-fn unnamed_time(out: &Trajectory) -> (f64, String, String) {
-    let units = [(1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")];
+const TIME_UNITS: [(f64, &str); 4] = [(1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")];
+
+/// The unit of stamps counted from 1970: 2001 to 2128 as seconds, ms, us or ns.
+fn epoch(out: &Trajectory) -> Option<(f64, String, String)> {
     let origin = (out.time_origin as f64).abs();
-    // 2001 to 2128 as seconds, ms, us, ns since 1970.
-    if let Some((factor, unit)) = units.into_iter().find(|(f, _)| (1e9..5e9).contains(&(origin * f))) {
-        return (factor, unit.to_owned(), "counted from 1970".to_owned());
-    }
-    let rates = [(&out.position, &out.velocity)];
-    let mut ratio = rates.iter().find_map(|(x, v)| rate_ratio(&out.time, x.as_ref()?, v.as_ref()?));
-    if ratio.is_none() {
-        ratio = out.scored.map(|s| s.factor).filter(|f| *f > 0.0);
-    }
+    let (factor, unit) = TIME_UNITS.into_iter().find(|(f, _)| (1e9..5e9).contains(&(origin * f)))?;
+    Some((factor, unit.to_owned(), "counted from 1970".to_owned()))
+}
+
+/// The unit of time where the name has none: by x' = v or q' = q omega / 2, or by the size of whole numbers.
+fn unnamed_time(out: &Trajectory, table: &Table, layout: &Layout) -> (f64, String, String) {
     let mut steps: Vec<f64> = out.time.windows(2).map(|w| w[1] - w[0]).collect();
     steps.sort_by(f64::total_cmp);
     let step = steps[steps.len() / 2];
-    if let Some(ratio) = ratio.filter(|_| step >= 1.0) {
-        let near = units.into_iter().find(|(f, _)| (ratio / f - 1.0).abs() < 0.1);
-        if let Some((factor, unit)) = near {
+    if step >= 1.0 {
+        let of_position = out.position.as_ref().zip(out.velocity.as_ref()).and_then(|(x, v)| rate_ratio(&out.time, x, v));
+        let of_angle = out.angle.as_ref().zip(out.angle_rate.as_ref()).and_then(|(x, v)| {
+            let flat = |s: &Scalars| Vectors {
+                values: s.values.iter().map(|x| Vector3::new(*x, 0.0, 0.0)).collect(),
+                axes: vec![0],
+                resolution: s.resolution,
+            };
+            rate_ratio(&out.time, &flat(x), &flat(v))
+        });
+        let near = |ratio: f64| TIME_UNITS.into_iter().find(|(f, _)| (ratio / f - 1.0).abs() < 0.1);
+        if let Some((factor, unit)) = of_position.or(of_angle).and_then(near) {
             return (factor, unit.to_owned(), "so that x' = v".to_owned());
+        }
+        let attitude = ATTITUDES.iter().find_map(|role| layout.get(*role));
+        if let (Some(attitude), Some(omega)) = (attitude, layout.get(Role::Omega)) {
+            let misfit = |factor: f64| {
+                let time: Vec<f64> = out.time.iter().map(|t| t * factor).collect();
+                readings::score(table, &time, attitude, omega)[0].misfit
+            };
+            let best = TIME_UNITS.into_iter().map(|(f, unit)| (misfit(f), f, unit)).min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, factor, unit)) = best.filter(|b| b.0 < 0.1) {
+                return (factor, unit.to_owned(), "so that q' = q omega / 2".to_owned());
+            }
         }
     }
     if step >= 1e5 {
