@@ -3,7 +3,9 @@
 pub mod checks;
 pub mod error;
 pub mod finding;
+pub mod physics;
 pub mod read;
+pub mod step;
 pub mod trajectory;
 
 pub use error::Error;
