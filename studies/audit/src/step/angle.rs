@@ -16,12 +16,12 @@ enum Scheme {
 }
 
 /// All candidates for theta'' = -omega0^2 sin theta.
-pub(super) fn candidates(square: f64) -> Vec<Candidate> {
+pub(super) fn candidates(square: f64, single: bool) -> Vec<Candidate> {
     let mut schemes: Vec<Scheme> = MethodId::ALL.iter().map(|m| Scheme::Method(*m)).collect();
     schemes.extend(Tableau::ALL.into_iter().take(3).map(Scheme::Tableau));
     schemes.extend(Memory::ALL.map(Scheme::Memory));
     let mut all = Vec::new();
-    for precision in Precision::ALL {
+    for &precision in Precision::tried(single) {
         for &scheme in &schemes {
             for substeps in [1_u32, 2, 4, 8] {
                 let memory = matches!(scheme, Scheme::Memory(_));
@@ -47,7 +47,7 @@ pub(super) fn candidates(square: f64) -> Vec<Candidate> {
                         Precision::Single => run::<f32>(scheme, square, start, h, k, rows),
                     }
                 };
-                all.push(Candidate { id, memory, precision, substeps, run: Box::new(run) });
+                all.push(Candidate { id, memory, steps: None, substeps, run: Box::new(run) });
             }
         }
     }

@@ -39,8 +39,10 @@ pub(super) enum Precision {
 }
 
 impl Precision {
-    /// Both.
-    pub(super) const ALL: [Precision; 2] = [Precision::Double, Precision::Single];
+    /// Double, and single for a file that may be of single precision.
+    pub(super) fn tried(single: bool) -> &'static [Precision] {
+        if single { &[Precision::Double, Precision::Single] } else { &[Precision::Double] }
+    }
 }
 
 /// Runs from a state: (start, h, steps in a row, rows) to the state at every row.
@@ -52,8 +54,8 @@ pub(super) struct Candidate {
     pub(super) id: String,
     /// Whether it has a memory, so that it cannot start from any row.
     pub(super) memory: bool,
-    /// Its arithmetic.
-    pub(super) precision: Precision,
+    /// The steps in a row for which its damping was fitted to the file; None where none was.
+    pub(super) steps: Option<u64>,
     /// Substeps in a step.
     pub(super) substeps: u32,
     /// How it runs.

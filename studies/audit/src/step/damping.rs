@@ -99,6 +99,8 @@ pub(super) struct Damping {
     pub(super) when: When,
     /// The coefficient, 1/s.
     pub(super) c: f64,
+    /// The steps in a row for which the coefficient was fitted; None for one that was not.
+    pub(super) steps: Option<u64>,
 }
 
 impl Damping {

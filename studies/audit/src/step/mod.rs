@@ -12,13 +12,13 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 pub use candidate::Moves;
-use candidate::{Candidate, Kin, Precision};
+use candidate::{Candidate, Kin};
 use integrator::Rotation;
 use damping::{Damping, Rule, When};
 
 use crate::checks::time::Clock;
 use crate::finding::quantile;
-use crate::physics::{Force, Moment, Physics};
+use crate::physics::{Force, Moment, Physics, acceleration};
 use crate::trajectory::{Rounding, Trajectory};
 
 /// What is known of the step of a file.
@@ -53,6 +53,8 @@ pub struct Tried {
     /// Other names of the same step: candidates that agree with it from any state.
     pub same_as: Vec<String>,
     #[serde(skip)]
+    fitted: bool,
+    #[serde(skip)]
     signature: Vec<f64>,
     #[serde(skip)]
     rank: (u32, bool, usize),
@@ -75,21 +77,27 @@ pub struct Identified {
     pub rows: usize,
 }
 
-/// Rows whose differences are allowed to be of another cause: contacts, clamps.
-const SHARE: f64 = 0.9;
-/// Rows from which every candidate is first tried.
-const FIRST: usize = 4;
+/// The share of rows that a step must reproduce: the others may be of another cause, a contact or a clamp.
+const SHARE: f64 = 0.45;
+/// Rows from which every candidate is first tried: half at the beginning, half over the file.
+const FIRST: usize = 6;
 /// Rows that are compared, at most.
 const ROWS: usize = 600;
 /// Candidates that are compared in all rows.
 const FINALISTS: usize = 40;
 /// How much worse the next candidate must be.
 const WORSE: f64 = 100.0;
+/// The same for a candidate that does not fit.
+const WORSE_AND_UNFIT: f64 = 10.0;
+/// By how much more rounding may gather in a free run in double precision.
+const FREE_RUN: f64 = 100.0;
 
 /// Rounding that a step may add, in resolutions: an engine's sixteen operations, and as many steps as lie between two rows.
 fn allowed(steps: u64, rounding: Rounding) -> f64 {
     match rounding {
-        Rounding::Double | Rounding::Single => 24.0 * (steps as f64).sqrt().max(1.0),
+        Rounding::Double => 24.0 + 16.0 * steps as f64,
+        // Single precision leaves less room between candidates: rounding is taken to grow as a random walk.
+        Rounding::Single => 16.0 + 10.0 * (steps as f64).sqrt(),
         // The rows themselves are rounded; the start's rounding is carried along.
         _ => 6.0,
     }
@@ -140,25 +148,32 @@ impl File<'_> {
         if d.is_finite() { d } else { f64::MAX }
     }
 
-    fn regular_rows(&self) -> Vec<usize> {
-        (0..self.t.rows() - 1).filter(|i| self.clock.is_regular(*i)).collect()
+    /// Pairs of rows that follow the law: no gap of the clock between them, and no contact.
+    fn rows_of(&self, force: Option<Force>) -> Vec<usize> {
+        let regular = (0..self.t.rows() - 1).filter(|i| self.clock.is_regular(*i));
+        let (Some(Force::Constant(g)), Some(v)) = (force, &self.t.velocity) else { return regular.collect() };
+        let h = self.clock.interval;
+        let falls = |i: &usize| ((v.values[i + 1] - v.values[*i]) / h - g).norm() < 0.5 * g.norm();
+        regular.filter(falls).collect()
     }
 }
 
 /// The steps of all parts of the motion of which the law is known.
 pub fn identify(t: &Trajectory, clock: &Clock, physics: &Physics, record_every: Option<u64>) -> Vec<Identified> {
     let mut out = Vec::new();
+    let single = t.rounding != Rounding::Double;
     if let (Some(force), Some(_), Some(v)) = (physics.force, &t.position, &t.velocity) {
         let file = File { t, clock, moves: Moves::Translation };
         if force == Force::None && !slows(&v.values) {
             return rotation_and_angle(t, clock, physics, record_every);
         }
-        let damping = if force == Force::None {
-            dampings(t, clock, &v.values, physics.linear_damping, record_every)
-        } else {
-            given(physics.linear_damping)
+        let x = &t.position.as_ref().map_or(&v.values, |x| &x.values);
+        let pull = |i: usize| {
+            let middle = (x[i] + x[i + 1]) / 2.0;
+            acceleration(force, middle) * (t.time[i + 1] - t.time[i])
         };
-        out.extend(search(&file, &translation::candidates(force, &damping), record_every));
+        let damping = dampings(t, clock, &v.values, physics.linear_damping, record_every, &pull);
+        out.extend(search(&file, &translation::candidates(force, &damping, single), Some(force), record_every));
     }
     out.extend(rotation_and_angle(t, clock, physics, record_every));
     out
@@ -172,18 +187,19 @@ fn slows(v: &[Vector3<f64>]) -> bool {
 
 fn rotation_and_angle(t: &Trajectory, clock: &Clock, physics: &Physics, record_every: Option<u64>) -> Vec<Identified> {
     let mut out = Vec::new();
+    let single = t.rounding != Rounding::Double;
     if let (Some(inertia), Some(moment), Some(_), Some(w)) = (physics.inertia, physics.moment, &t.attitude, &t.omega) {
         let file = File { t, clock, moves: Moves::Rotation };
         let damping = if moment == Moment::None {
-            dampings(t, clock, &w.values, physics.angular_damping, record_every)
+            dampings(t, clock, &w.values, physics.angular_damping, record_every, &|_| Vector3::zeros())
         } else {
             given(physics.angular_damping)
         };
-        out.extend(search(&file, &rotation::candidates(inertia, moment, &damping, t.omega_frame), record_every));
+        out.extend(search(&file, &rotation::candidates(inertia, moment, &damping, t.omega_frame, single), None, record_every));
     }
     if let (Some(square), Some(_), Some(_)) = (physics.pendulum, &t.angle, &t.angle_rate) {
         let file = File { t, clock, moves: Moves::Angle };
-        out.extend(search(&file, &angle::candidates(square), record_every));
+        out.extend(search(&file, &angle::candidates(square, single), None, record_every));
     }
     out
 }
@@ -199,48 +215,73 @@ fn given(c: Option<f64>) -> Vec<Option<Damping>> {
     let mut out = vec![None];
     for rule in Rule::ALL {
         let whens: &[When] = if rule.is_force() { &[When::Between] } else { &When::ALL };
-        out.extend(whens.iter().map(|&when| Some(Damping { rule, when, c })));
+        out.extend(whens.iter().map(|&when| Some(Damping { rule, when, c, steps: None })));
     }
     out
 }
 
-/// The dampings that the loss of speed in the first rows suggests: each rule with the shortest decimal coefficient near it.
+/// The dampings that the loss of speed suggests: each rule with the short decimal coefficients near it, and with the one
+/// that the first rows give. `pull(i)`: what the force adds to the velocity between two rows.
 fn dampings(
     t: &Trajectory,
     clock: &Clock,
     rates: &[Vector3<f64>],
     c: Option<f64>,
     record_every: Option<u64>,
+    pull: &dyn Fn(usize) -> Vector3<f64>,
 ) -> Vec<Option<Damping>> {
     if c.is_some() {
         return given(c);
     }
-    let ratios: Vec<f64> = (0..t.rows() - 1)
-        .filter(|i| clock.is_regular(*i))
-        .map(|i| rates[i + 1].norm() / rates[i].norm())
-        .filter(|r| r.is_finite())
-        .collect();
-    let ratio = quantile(&ratios, 0.5);
-    let loses = ratios.iter().filter(|r| **r < 1.0).count() * 10 > ratios.len() * 9;
-    if !(ratio < 1.0 - 1e-7 && loses) {
-        return vec![None];
-    }
-    let middle = rates.len() / 2;
+    let pairs: Vec<usize> = (0..t.rows() - 1).filter(|i| clock.is_regular(*i)).collect();
+    let Some((rate, quadratic)) = loss(rates, clock.interval, &pairs, pull) else { return vec![None] };
+    let first = pairs[0];
+    let exact = rates[first + 1].norm() / rates[first].norm();
+    let free = pairs.iter().take(8).all(|i| pull(*i).norm() == 0.0);
     let mut out = vec![None];
     for k in steps_per_row(record_every) {
         let h = clock.interval / k as f64;
-        let factor = ratio.powf(1.0 / k as f64);
         for rule in Rule::ALL {
-            let near = rule.coefficient(factor, h, rates[middle].norm());
-            for c in short_decimals(near) {
+            let near = match rule {
+                Rule::QuadraticForce => quadratic,
+                Rule::Power => 1.0 - (-rate).exp(),
+                _ => rate,
+            };
+            let mut all: Vec<(f64, Option<u64>)> = short_decimals(near).into_iter().map(|c| (c, None)).collect();
+            if free && rule != Rule::QuadraticForce {
+                all.push((rule.coefficient(exact.powf(1.0 / k as f64), h, 0.0), Some(k)));
+            }
+            for (c, steps) in all {
                 let whens: &[When] = if rule.is_force() { &[When::Between] } else { &When::ALL };
-                let all = whens.iter().map(|&when| Some(Damping { rule, when, c }));
+                let all = whens.iter().map(|&when| Some(Damping { rule, when, c, steps }));
                 let new: Vec<_> = all.filter(|d| !out.contains(d)).collect();
                 out.extend(new);
             }
         }
     }
     out
+}
+
+/// The rates c of -c v and -c (1 + |v|) v that explain the loss of speed, if there is one: the slope of the change of v that
+/// the force does not explain.
+fn loss(
+    rates: &[Vector3<f64>],
+    interval: f64,
+    pairs: &[usize],
+    pull: &dyn Fn(usize) -> Vector3<f64>,
+) -> Option<(f64, f64)> {
+    let changes: Vec<[f64; 3]> = pairs
+        .iter()
+        .map(|&i| {
+            let mean = (rates[i] + rates[i + 1]) / 2.0;
+            let lost = -(rates[i + 1] - rates[i] - pull(i)) / interval;
+            [lost.dot(&mean), mean.norm_squared(), (1.0 + mean.norm()) * mean.norm_squared()]
+        })
+        .collect();
+    let ratio = |j: usize| quantile(&changes.iter().map(|c| c[0] / c[j]).filter(|r| r.is_finite()).collect::<Vec<_>>(), 0.5);
+    let losing = changes.iter().filter(|c| c[0] > 0.0).count();
+    let rate = ratio(1);
+    (rate > 1e-5 && losing * 10 > changes.len() * 8).then(|| (rate, ratio(2)))
 }
 
 /// Decimals of one to three digits within two parts in a hundred.
@@ -250,30 +291,35 @@ fn short_decimals(x: f64) -> Vec<f64> {
         let place = digits - 1 - x.abs().log10().floor() as i32;
         let scale = 10.0_f64.powi(place.abs());
         let short = if place >= 0 { (x * scale).round() / scale } else { (x / scale).round() * scale };
-        if (short / x - 1.0).abs() < 0.02 && !out.contains(&short) {
-            out.push(short);
+        // A coefficient may be stored in single precision by an engine that computes in double.
+        for c in [short, f64::from(short as f32)] {
+            if (short / x - 1.0).abs() < 0.02 && !out.contains(&c) {
+                out.push(c);
+            }
         }
     }
     out
 }
 
-fn search(file: &File<'_>, candidates: &[Candidate], record_every: Option<u64>) -> Option<Identified> {
-    let rows = file.regular_rows();
+fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, record_every: Option<u64>) -> Option<Identified> {
+    let rows = file.rows_of(force);
     if rows.len() < 2 || !moves(file, &rows) {
         return None;
     }
-    let first: Vec<usize> = (0..FIRST.min(rows.len())).map(|i| rows[i * (rows.len() - 1) / FIRST.max(1)]).collect();
+    let place = |i: usize| if i < FIRST / 2 { i } else { (i - FIRST / 2 + 1) * (rows.len() - 1) / FIRST };
+    let first: Vec<usize> = (0..FIRST.min(rows.len())).map(|i| rows[place(i)]).collect();
     let ks = steps_per_row(record_every);
     let mut pool: Vec<(f64, usize, u64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
-        for &k in &ks {
+        for &k in ks.iter().filter(|k| candidate.steps.is_none_or(|only| only == **k)) {
             let scores = if candidate.memory { free_run(file, candidate, k, FIRST * 2) } else { from_rows(file, candidate, k, &first) };
-            let score = quantile(&scores, 0.67) / allowed(k, file.t.rounding);
+            let score = quantile(&scores, 0.4) / allowed(k, file.t.rounding);
             pool.push((score, c, k));
         }
     }
     pool.sort_by(|a, b| a.0.total_cmp(&b.0));
     let compared: Vec<usize> = rows.iter().copied().step_by((rows.len() / ROWS).max(1)).collect();
+    let fewest = pool.iter().take(FINALISTS).map(|(_, _, k)| *k).min().unwrap_or(1);
     let mut tried: Vec<Tried> = Vec::new();
     for &(_, c, k) in pool.iter().take(FINALISTS) {
         let candidate = &candidates[c];
@@ -287,7 +333,8 @@ fn search(file: &File<'_>, candidates: &[Candidate], record_every: Option<u64>) 
             rows: scores.iter().filter(|s| **s <= limit).count(),
             free_run: candidate.memory,
             same_as: Vec::new(),
-            signature: signature(candidate, file, k),
+            fitted: candidate.steps.is_some(),
+            signature: signature(candidate, file, k, fewest),
             rank: (candidate.substeps, !candidate.id.starts_with("semi-implicit"), c),
         });
     }
@@ -295,14 +342,16 @@ fn search(file: &File<'_>, candidates: &[Candidate], record_every: Option<u64>) 
     Some(verdict(file, tried, pool.len(), compared.len()))
 }
 
-/// By how much rounding grows in a free run: with the number of steps.
+/// By how much rounding grows in a free run: with the square root of the number of steps.
 fn growth(scores: &[f64], k: u64) -> f64 {
-    (scores.len() as f64 * k as f64).max(1.0)
+    (scores.len() as f64 * k as f64).max(1.0).sqrt()
 }
 
 /// Whether anything moves by more than the resolution.
 fn moves(file: &File<'_>, rows: &[usize]) -> bool {
-    rows.iter().take(64).any(|&i| file.difference(&file.kin(i), i + 1) > 64.0)
+    let turns = file.moves != Moves::Rotation
+        || file.t.omega.as_ref().is_some_and(|w| w.values.iter().any(|w| w.norm() * file.clock.interval > 1e-9));
+    turns && rows.iter().take(64).any(|&i| file.difference(&file.kin(i), i + 1) > 64.0)
 }
 
 fn from_rows(file: &File<'_>, candidate: &Candidate, k: u64, rows: &[usize]) -> Vec<f64> {
@@ -322,21 +371,23 @@ fn free_run(file: &File<'_>, candidate: &Candidate, k: u64, rows: usize) -> Vec<
     run.iter().enumerate().map(|(i, kin)| file.difference(kin, i + 1)).collect()
 }
 
-/// Where a candidate goes from a generic state, in steps as long as those of the file: what tells it from others in general.
-fn signature(candidate: &Candidate, file: &File<'_>, k: u64) -> Vec<f64> {
+/// Where a candidate goes from a generic state in long steps: what tells it from others in general. `fewest`: the smallest
+/// number of steps in a row of all that are compared, so that a step is at most 1/8 s.
+fn signature(candidate: &Candidate, file: &File<'_>, k: u64, fewest: u64) -> Vec<f64> {
     let own = file.kin(0);
-    // Generic directions, and sizes of the file: nothing is parallel to an axis, nothing is at rest.
     let size = |v: &Option<crate::trajectory::Vectors>| {
-        v.as_ref().map_or(1.0, |v| v.values.iter().map(|x| x.norm()).fold(0.0, f64::max)).max(1e-3)
+        v.as_ref().map_or(1.0, |v| v.values.iter().map(|x| x.norm()).fold(0.0, f64::max)).max(0.5)
     };
+    // Nothing is parallel to an axis, nothing is at rest.
     let start = Kin {
         x: Vector3::new(0.61, -0.37, 0.83) * size(&file.t.position),
         v: Vector3::new(-0.43, 0.71, 0.29) * size(&file.t.velocity),
         q: Rotation::from_wxyz([0.77, -0.31, 0.43, 0.37]).wxyz(),
-        w: Vector3::new(0.53, 0.67, -0.41) * size(&file.t.omega),
+        w: Vector3::new(1.53, 1.67, -1.41),
         angle: [own.angle[0] + 0.5, own.angle[1] + 0.3],
     };
-    let end = (candidate.run)(&start, file.clock.interval / k as f64, k, 2);
+    let interval = 0.125 * fewest as f64;
+    let end = (candidate.run)(&start, interval / k as f64, k, 2);
     let Some(end) = end.last() else { return vec![] };
     let sign = end.q[0].signum();
     match file.moves {
@@ -348,7 +399,7 @@ fn signature(candidate: &Candidate, file: &File<'_>, k: u64) -> Vec<f64> {
 
 /// Puts candidates that are the same step together, under the plainest of their names.
 fn merged(tried: Vec<Tried>, single: bool) -> Vec<Tried> {
-    let tolerance = if single { 1e-4 } else { 1e-10 };
+    let tolerance = if single { 2e-5 } else { 1e-10 };
     let mut out: Vec<Tried> = Vec::new();
     for mut t in tried {
         let same = |o: &&mut Tried| {
@@ -376,13 +427,20 @@ fn verdict(file: &File<'_>, mut tried: Vec<Tried>, pool: usize, rows: usize) -> 
         Moves::Rotation => file.t.attitude.as_ref().map(|a| a.resolution.absolute),
         Moves::Angle => file.t.angle.as_ref().map(|a| a.resolution.absolute),
     };
-    let fits = |c: &Tried| c.largest_difference <= allowed(c.steps_per_row, file.t.rounding);
+    let fits = |c: &Tried| {
+        let more = if c.free_run && file.t.rounding == Rounding::Double { FREE_RUN } else { 1.0 };
+        c.largest_difference <= more * allowed(c.steps_per_row, file.t.rounding)
+    };
     let best = tried.first().map_or(f64::MAX, |t| t.largest_difference.max(1.0));
     let verdict = if !tried.first().is_some_and(fits) {
         tried.truncate(3);
         StepVerdict::NoneOf
     } else {
-        tried.retain(|t| t.largest_difference < WORSE * best);
+        tried.retain(|t| t.largest_difference < if fits(t) { WORSE } else { WORSE_AND_UNFIT } * best);
+        // A coefficient of few digits is no accident; one that was fitted to the file says nothing about its rule.
+        if tried.iter().any(|t| !t.fitted && fits(t)) {
+            tried.retain(|t| !t.fitted);
+        }
         tried = merged(tried, file.t.rounding == Rounding::Single);
         if tried.len() == 1 { StepVerdict::Identified } else { StepVerdict::OneOf }
     };

@@ -70,6 +70,7 @@ pub(super) fn candidates(
     moment: Moment,
     damping: &[Option<Damping>],
     frame: OmegaFrame,
+    single: bool,
 ) -> Vec<Candidate> {
     let body = Body { inertia, moment, drag: Drag::None };
     let mut schemes: Vec<Scheme> = RigidStep::ALL.iter().map(|s| Scheme::Rigid(*s)).collect();
@@ -77,7 +78,7 @@ pub(super) fn candidates(
         schemes.extend(MethodId::ALL.iter().map(|m| Scheme::General(*m, storage)));
     }
     let mut all = Vec::new();
-    for precision in Precision::ALL {
+    for &precision in Precision::tried(single) {
         for &damping in damping {
             for &scheme in &schemes {
                 for update in AttitudeUpdate::ALL {
@@ -159,7 +160,7 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
     let id = suffixed(name(&plan), plan.damping, precision);
-    Candidate { id, memory: false, precision, substeps: plan.substeps, run: Box::new(run) }
+    Candidate { id, memory: false, steps: plan.damping.and_then(|d| d.steps), substeps: plan.substeps, run: Box::new(run) }
 }
 
 fn drag(damping: Option<Damping>) -> Drag {
@@ -373,7 +374,7 @@ fn raw_candidate(plan: RawPlan, precision: Precision) -> Candidate {
         Precision::Single => run_raw::<f32>(plan, start, h, k, rows),
     };
     let memory = matches!(plan.scheme, RawScheme::Memory(_));
-    Candidate { id, memory, precision, substeps: 1, run: Box::new(run) }
+    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), substeps: 1, run: Box::new(run) }
 }
 
 struct Once<'a, T: Single> {

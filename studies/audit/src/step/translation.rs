@@ -43,13 +43,13 @@ struct Plan {
 }
 
 /// All candidates for a force; `damping`: those that the file may have.
-pub(super) fn candidates(force: Force, damping: &[Option<Damping>]) -> Vec<Candidate> {
+pub(super) fn candidates(force: Force, damping: &[Option<Damping>], single: bool) -> Vec<Candidate> {
     let mut schemes: Vec<Scheme> = MethodId::ALL.iter().map(|m| Scheme::Method(*m)).collect();
     schemes.extend([Scheme::MeanVelocity, Scheme::PositionFirst]);
     schemes.extend(Tableau::ALL.into_iter().take(3).map(Scheme::Tableau));
     schemes.extend(Memory::ALL.map(Scheme::Memory));
     let mut all = Vec::new();
-    for precision in Precision::ALL {
+    for &precision in Precision::tried(single) {
         for &damping in damping {
             for &scheme in &schemes {
                 let damped = damping.is_some();
@@ -100,7 +100,7 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Double => run::<f64>(plan, start, h, k, rows),
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
-    Candidate { id, memory, precision, substeps: plan.substeps, run: Box::new(run) }
+    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), substeps: plan.substeps, run: Box::new(run) }
 }
 
 fn run<T: Single>(plan: Plan, start: &Kin, h: f64, k: u64, rows: u64) -> Vec<Kin> {
