@@ -97,7 +97,7 @@ fn allowed(steps: u64, rounding: Rounding) -> f64 {
     match rounding {
         Rounding::Double => 24.0 + 16.0 * steps as f64,
         // Single precision leaves less room between candidates: rounding is taken to grow as a random walk.
-        Rounding::Single => 16.0 + 10.0 * (steps as f64).sqrt(),
+        Rounding::Single => 20.0 + 12.0 * (steps as f64).sqrt(),
         // The rows themselves are rounded; the start's rounding is carried along.
         _ => 6.0,
     }
