@@ -1,9 +1,9 @@
 """Time to accuracy of heyoka's adaptive Taylor integrator on the problems of this package.
 
-    cargo run --release -- --csv ../../studies/data/peers.csv
+    cargo run --release -- --csv ../../studies/measure/data/peers.csv
     cargo run --release -- --problems /tmp/problems.json
     python3 -m venv /tmp/peers && /tmp/peers/bin/pip install heyoka numpy
-    /tmp/peers/bin/python with_heyoka.py /tmp/problems.json ../../studies/data/peers.csv
+    /tmp/peers/bin/python with_heyoka.py /tmp/problems.json ../../studies/measure/data/peers.csv
 
 The tolerance is searched as for the others: the largest from which on four smaller ones meet the error too. A run is timed
 whole, with its call from Python (about a microsecond), the least and the median over many. Its rows replace those that the

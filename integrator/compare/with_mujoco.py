@@ -1,7 +1,7 @@
 """What a step of a free body costs in MuJoCo: the whole pipeline, without geometry.
 
     /tmp/peers/bin/pip install mujoco
-    /tmp/peers/bin/python with_mujoco.py ../../studies/data/peers.csv
+    /tmp/peers/bin/python with_mujoco.py ../../studies/measure/data/peers.csv
 
 The steps are taken inside one call, so that Python is not in the measurement. Its rows replace those that the table has of
 MuJoCo. Its Euler is semi-implicit, with the gyroscopic term evaluated at the old velocity.

@@ -2,17 +2,17 @@
 
 use std::sync::OnceLock;
 
+use measure::adequacy::{Adequacy, Row, rungs};
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
 use reports::Verdict;
-use studies::adequacy::{Adequacy, Row, rungs};
-use studies::run::Precision;
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
+use scenes::run::Precision;
 
 fn rows() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
         Adequacy::measure(&Selection {
-            scenes: studies::scenes::catalogue(),
+            scenes: scenes::all(),
             methods: integrator::methods::MethodId::ALL.to_vec(),
             precisions: Precision::ALL.to_vec(),
             steps: Vec::new(),

@@ -1,14 +1,14 @@
 //! Advice of the tradeoff study, checked by running what it advises. Times are not looked at: they are not the same twice.
 
 use integrator::methods::MethodId;
-use studies::run::Precision;
-use studies::scenes;
-use studies::study::Selection;
-use studies::sweep::Progress;
-use studies::tradeoff::advice::{Advice, Question, advise};
-use studies::tradeoff::candidate::candidates;
-use studies::tradeoff::search::{Need, Search, attempt, finer, search};
-use studies::tradeoff::truth::Truth;
+use scenes::run::Precision;
+
+use measure::study::Selection;
+use measure::sweep::Progress;
+use measure::tradeoff::advice::{Advice, Question, advise};
+use measure::tradeoff::candidate::candidates;
+use measure::tradeoff::search::{Need, Search, attempt, finer, search};
+use measure::tradeoff::truth::Truth;
 use verification::programs::program;
 
 fn selection(id: &str) -> Selection {

@@ -1,9 +1,8 @@
 //! A step allocates nothing: a run of many steps asks for as much memory as a run of few.
 
 use integrator::methods::{MethodId, RigidStep};
-use studies::ensemble::draw::{draw, with_a_rule};
-use studies::run::{Precision, Run};
-use studies::scenes;
+use measure::ensemble::draw::{draw, with_a_rule};
+use scenes::run::{Precision, Run};
 
 /// Steps of a short run and of a long one; both are looked at twice, at the start and at the end.
 const STEPS: [u64; 2] = [64, 4096];
@@ -26,7 +25,7 @@ fn an_allocation_is_counted() {
 fn a_step_of_an_explicit_method_allocates_nothing_in_any_scene() {
     let explicit = MethodId::ALL.iter().filter(|method| !method.is_implicit());
     for &method in explicit {
-        for scene in scenes::catalogue() {
+        for scene in scenes::all() {
             for precision in [Precision::F32, Precision::F64] {
                 let run = |steps| Run::new(method, precision, 1.0 / 64.0, steps);
                 let [few, many] = STEPS.map(|steps| allocations(|| drop(scene.run(&run(steps), steps))));

@@ -1,15 +1,17 @@
 //! The gate: what the file may hold, what turns it red, what it says, and that it lets no wrong method pass.
 
+use gate::candidate::Candidate;
+use gate::known::Known;
+use gate::mutants::{Mutant, deaths};
+use gate::row;
+use gate::row::{Kind, Row, Subject};
+use gate::stepper::{Ask, Stepper};
+use gate::{Bounds, Judged, audit, baseline, check, format, propose, read, update};
+use measure::drift::Drift;
+use measure::sweep::Progress;
 use proptest::prelude::*;
-use studies::bounds::candidate::Candidate;
-use studies::bounds::mutants::{Mutant, deaths};
-use studies::bounds::row::{self, Kind, Row, Subject};
-use studies::bounds::stepper::{Ask, Stepper};
-use studies::bounds::{Bounds, Judged, audit, baseline, check, format, known::Known, propose, read, update};
-use studies::drift::Drift;
-use studies::observation::Quantity;
-use studies::run::{Outcome, Precision, Trajectory};
-use studies::sweep::Progress;
+use scenes::observation::Quantity;
+use scenes::run::{Outcome, Precision, Trajectory};
 
 const FILE: &[u8] = include_bytes!("../data/bounds.csv");
 
@@ -33,7 +35,7 @@ fn every_committed_bound_holds() {
 }
 
 fn has_formula(scene: &str, method: &str) -> bool {
-    let scene = studies::scenes::by_id(scene).expect("a scene of the catalogue");
+    let scene = scenes::by_id(scene).expect("a scene of the catalogue");
     let stepper = Stepper::from_id(method, scene.as_ref()).expect("a method of the scene");
     stepper.of_theory().is_some_and(|method| scene.scene().stability_limit(method).is_some())
 }
@@ -123,7 +125,7 @@ impl Candidate for Failing {
             Failing::Diverges => (run.outcome, run.failed_step) = (Outcome::Diverged, Some(3)),
             Failing::IsNaN => run.seen.iter_mut().for_each(|(_, seen)| {
                 seen.values.iter_mut().for_each(|(_, value)| {
-                    if let studies::observation::Value::Vector(x) = value {
+                    if let scenes::observation::Value::Vector(x) = value {
                         x.iter_mut().for_each(|x| *x = faer::fx128::from_f64(f64::NAN));
                     }
                 });
@@ -151,7 +153,7 @@ fn a_run_that_fails_and_a_number_that_is_none_break_their_rows() {
     assert!(check::report(&none.judged).contains("0 bounds hold, 0 broken"));
 }
 
-fn deaths_of_none(bounds: &Bounds) -> Vec<studies::bounds::mutants::Death> {
+fn deaths_of_none(bounds: &Bounds) -> Vec<gate::mutants::Death> {
     deaths(bounds, &[], &Progress::silent()).expect("nothing to run")
 }
 
@@ -285,7 +287,7 @@ fn the_audit_sees_what_is_vacuous_and_what_is_too_tight() {
         let change = |row: &mut Row| (row.low, row.high, row.reason) = (0.0, high, "theory: 0".to_owned());
         let mut one = judged[0].clone();
         change(&mut one.row);
-        one.measured = studies::bounds::measure::Measured::Value(1e-30);
+        one.measured = gate::numbers::Measured::Value(1e-30);
         audit::finding(one, None, f64::EPSILON)
     };
     assert!(rounding(16.0 * f64::EPSILON).margin > 3.0 && !rounding(16.0 * f64::EPSILON).vacuous);
@@ -345,7 +347,7 @@ fn two_results_are_compared_in_the_direction_that_is_worse() {
     let scaled = |factor: f64, kind: Kind| -> Vec<Judged> {
         let mut rows = rows.clone();
         for one in rows.iter_mut().filter(|one| one.row.kind == kind) {
-            one.measured = studies::bounds::measure::Measured::Value(one.measured.value().expect("a number") * factor);
+            one.measured = gate::numbers::Measured::Value(one.measured.value().expect("a number") * factor);
         }
         rows
     };

@@ -2,17 +2,17 @@
 //! registered is in it. It cannot see an error that the exact motion shares with the model: the oracles look for that.
 
 use integrator::methods::MethodId;
+use measure::convergence::Convergence;
+use measure::rotation::Rotation;
 use reports::Verdict;
-use studies::convergence::Convergence;
-use studies::rotation::Rotation;
-use studies::run::Precision;
-use studies::scenes;
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
+use scenes::run::Precision;
+
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
 
 fn everything(precisions: &[Precision]) -> Selection {
     Selection {
-        scenes: scenes::catalogue(),
+        scenes: scenes::all(),
         methods: MethodId::ALL.to_vec(),
         precisions: precisions.to_vec(),
         steps: Vec::new(),

@@ -8,8 +8,8 @@ use faer::fx128;
 use integrator::methods::{ExplicitEuler, SemiImplicitEuler};
 use integrator::{Method, Single, State, drive};
 use nalgebra::Vector1;
-use studies::scene::Motion;
-use studies::scenes::Oscillator;
+use scenes::Oscillator;
+use scenes::motion::Motion;
 
 type S<T> = State<Vector1<T>>;
 

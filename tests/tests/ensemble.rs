@@ -9,17 +9,18 @@ use integrator::methods::MethodId;
 use integrator::pose::Fixed;
 use integrator::rigid_body::{BodyOmega, Kinematics, RigidModel, WorldOmega};
 use integrator::{Model, Real, Rotation, State, Vector};
+use measure::ensemble::draw::{Members, draw, with_a_rule};
+use measure::ensemble::lanes::{Coordinates, Eight, WIDTH, run_pack, runs_in_lanes};
+use measure::ensemble::random::Generator;
+use measure::ensemble::{Row, measure};
+use programs::cli::ensemble::ensemble;
+use measure::study::Selection;
+use measure::sweep::Progress;
 use nalgebra::{Matrix3, Vector1, Vector2, Vector3};
 use reports::write_csv;
-use studies::ensemble::draw::{Members, draw, with_a_rule};
-use studies::ensemble::lanes::{Coordinates, Eight, WIDTH, run_pack, runs_in_lanes};
-use studies::ensemble::random::Generator;
-use studies::ensemble::{Row, ensemble, measure};
-use studies::observation::{Observation, Quantity, Value};
-use studies::run::{Precision, Run};
-use studies::scenes::{self, Kepler, Pendulum, TorqueFreeSpin};
-use studies::study::Selection;
-use studies::sweep::Progress;
+use scenes::observation::{Observation, Quantity, Value};
+use scenes::run::{Precision, Run};
+use scenes::{Kepler, Pendulum, TorqueFreeSpin};
 use wide::f64x4;
 
 const IN_LANES: [MethodId; 4] =
@@ -270,9 +271,9 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
 // Fails if: the study claims an order that theory does not promise, or fits failed runs.
 #[test]
 fn median_and_worst_fall_with_the_order_of_the_method() {
-    use studies::study::Study;
+    use measure::study::Study;
     let rows = measure(&selection("torque-free-spin", &IN_LANES, &[8, 16, 32, 64, 128, 256, 512, 1024, 2048]), 64, 1);
-    let claims = studies::ensemble::Ensemble::claims(&rows);
+    let claims = measure::ensemble::Ensemble::claims(&rows);
     assert_eq!(claims.len(), 4 * 2 * 2);
     assert!(claims.iter().all(|claim| claim.verdict == reports::Verdict::Holds), "{claims:#?}");
 }
@@ -282,7 +283,7 @@ fn median_and_worst_fall_with_the_order_of_the_method() {
 fn what_cannot_run_in_lanes_is_refused_with_what_can() {
     let refused = |id: &str, methods: &[MethodId], precision, count| {
         let mut plan = Selection { precisions: vec![precision], ..selection(id, methods, &[8]) };
-        ensemble(&mut plan, count, 1, studies::cli::Format::Svg)
+        ensemble(&mut plan, count, 1, programs::cli::Format::Svg)
             .err()
             .map(|error| error.to_string())
             .unwrap_or_default()

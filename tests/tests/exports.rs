@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use measure::convergence::Row;
 use reports::{Claim, Verdict};
-use studies::convergence::Row;
 use tempfile::TempDir;
 use verification::programs::{PROGRAMS, assert_same, files, program, run, text, untimed};
 
@@ -252,7 +252,7 @@ fn said(name: &str, arguments: &[&str]) -> String {
 fn every_program_lists_completes_and_documents_itself() {
     for name in PROGRAMS.into_iter().chain(["bounds"]) {
         let list = said(name, &["list"]);
-        let ids = studies::scenes::IDS.iter().copied();
+        let ids = scenes::IDS.iter().copied();
         for id in ids.chain(integrator::methods::MethodId::ALL.iter().map(|m| m.id())).chain(["double-double"]) {
             assert!(list.lines().any(|line| line.split_whitespace().next() == Some(id)), "{name}: {id}");
         }

@@ -4,10 +4,10 @@ use faer::fx128;
 use integrator::real::Single;
 use integrator::rotation::Rotation;
 use nalgebra::Vector3;
-use studies::special::free_top::FreeTop;
-use studies::special::lagrange_top::LagrangeTop;
-use studies::special::sphere_torque::SphereTop;
-use studies::special::symmetric_top::SymmetricTop;
+use scenes::special::free_top::FreeTop;
+use scenes::special::lagrange_top::LagrangeTop;
+use scenes::special::sphere_torque::SphereTop;
+use scenes::special::symmetric_top::SymmetricTop;
 use verification::reference::{self, Reference, Row};
 
 type Motion<T> = (Rotation<T>, Vector3<T>);

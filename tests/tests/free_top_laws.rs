@@ -7,8 +7,8 @@ use integrator::real::{Real, Single};
 use integrator::rotation::{Rotation, cross, dot};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use studies::special::free_top::FreeTop;
-use studies::special::symmetric_top::SymmetricTop;
+use scenes::special::free_top::FreeTop;
+use scenes::special::symmetric_top::SymmetricTop;
 use verification::derivative;
 
 const EPS: f64 = <fx128 as Single>::EPSILON;

@@ -1,8 +1,8 @@
 //! The gate for an integrator of your own: a method defined here, outside the workspace's crates, held to the committed bounds
 //! of the method it claims to be. These lines are all that another crate needs.
 
+use gate::{Bounds, Flat, Held, InBody, InWorld};
 use integrator::{Method, Model, Real, Space, State, Vector};
-use studies::bounds::{Bounds, Flat, Held, InBody, InWorld};
 
 /// Semi-implicit Euler as somebody else would write it: a backward difference of the position.
 struct Mine;

@@ -6,10 +6,10 @@
 use faer::fx128;
 use integrator::{Real, Single};
 use proptest::prelude::*;
-use studies::run::Precision;
-use studies::scene::AnyScene;
-use studies::scenes::parameters::Range;
-use studies::scenes::{by_id, catalogue};
+use scenes::any::AnyScene;
+use scenes::parameters::Range;
+use scenes::run::Precision;
+use scenes::{all, by_id};
 
 /// Step of the differences in natural time scales of the scene.
 const STEP: f64 = 1.0 / 4096.0;
@@ -61,7 +61,7 @@ fn randomise(scene: &mut dyn AnyScene, mut numbers: impl Iterator<Item = f64>) -
 
 #[test]
 fn default_motions_solve_their_equations_and_f64_agrees_with_double_double() {
-    for scene in catalogue() {
+    for scene in all() {
         for k in 1..64 {
             let fraction = f64::from(k) / 64.0;
             solves_its_equation(scene.as_ref(), fraction);
@@ -85,7 +85,7 @@ proptest! {
         numbers in prop::collection::vec(0.0..1.0_f64, 64),
         fraction in 0.01..0.99_f64,
     ) {
-        for mut scene in catalogue() {
+        for mut scene in all() {
             if randomise(scene.as_mut(), numbers.iter().copied()) {
                 solves_its_equation(scene.as_ref(), fraction);
             }

@@ -11,9 +11,9 @@ use integrator::rigid_body::{
     BodyOmega, Kinematics, RigidBody, Torque, WithoutGyroscopicTerm, WorldMomentum, WorldOmega,
 };
 use integrator::{Method, Model, Pose, Real, Rotation, Space, State, Twist, Vector, drive};
+use measure::order::{Expected, Limits, Order, Sample, Verdict, observe};
 use nalgebra::Vector3;
-use studies::order::{Expected, Limits, Order, Sample, Verdict, observe};
-use studies::special::free_top::FreeTop;
+use scenes::special::free_top::FreeTop;
 
 type T = fx128;
 type V3 = Vector3<fx128>;

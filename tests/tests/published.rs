@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use faer::fx128;
 use integrator::methods::VelocityVerlet;
 use integrator::{Single, drive};
+use scenes::Oscillator;
+use scenes::motion::Motion;
 use serde::Deserialize;
-use studies::scene::Motion;
-use studies::scenes::Oscillator;
 
 #[derive(Deserialize)]
 struct Published {
@@ -24,8 +24,8 @@ struct Published {
 
 /// The one row of that id and scene.
 fn published(id: &str, scene: &str) -> Published {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studies/data/published.csv");
-    let mut reader = csv::Reader::from_path(&path).expect("studies/data/published.csv");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studies/measure/data/published.csv");
+    let mut reader = csv::Reader::from_path(&path).expect("studies/measure/data/published.csv");
     let rows = reader.deserialize().map(|row| row.expect("a well-formed row"));
     let mut of_id = rows.filter(|row: &Published| row.id == id && row.scene == scene);
     let row = of_id.next().expect("the row is there");

@@ -6,12 +6,12 @@ use faer::fx128;
 use integrator::methods::SemiImplicitEuler;
 use integrator::{Single, State, drive};
 use nalgebra::Vector2;
-use studies::scene::Motion;
-use studies::scenes::{Kepler, Pendulum};
+use scenes::motion::Motion;
+use scenes::{Kepler, Pendulum};
 
 /// (step, quantity, value, digits that can be reproduced) of the rows of one id.
 fn rows(id: &str) -> Vec<(String, String, f64, i32)> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studies/data/published.csv");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studies/measure/data/published.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let records = reader.records().map(|r| r.expect("a well-formed table"));
     records

@@ -1,6 +1,6 @@
 //! Numbers that Gazebo's benchmark and MuJoCo's tests print for rigid bodies, from this integrator.
 
-use studies::rotation::published::{Comparison, comparisons};
+use measure::rotation::published::{Comparison, comparisons};
 
 fn of(id: &str) -> Vec<Comparison> {
     let all = comparisons().expect("the embedded data are well-formed");

@@ -6,9 +6,9 @@
 use faer::fx128;
 use integrator::{Single, State};
 use nalgebra::SMatrix;
-use studies::scene::Motion;
-use studies::scenes::spring_chain::chain_motion;
-use studies::scenes::{
+use scenes::motion::Motion;
+use scenes::spring_chain::chain_motion;
+use scenes::{
     ChargedParticle, ConstantForce, DampedOscillator, ForcedOscillator, Kepler, LinearDrag, Oscillator, Pendulum,
     QuadraticDrag,
 };

@@ -8,10 +8,8 @@ use integrator::rigid_body::{Kinematics, Torque};
 use integrator::rotation::{Rotation, cross};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use studies::scene::RigidMotion;
-use studies::scenes::{
-    BoxTumbling, HeavyTop, Manufactured, PrincipalAxisTorque, SphereTorque, SymmetricTop, TorqueFreeSpin,
-};
+use scenes::motion::RigidMotion;
+use scenes::{BoxTumbling, HeavyTop, Manufactured, PrincipalAxisTorque, SphereTorque, SymmetricTop, TorqueFreeSpin};
 use verification::derivative;
 use verification::reference::{self, Reference};
 

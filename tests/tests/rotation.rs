@@ -3,11 +3,11 @@
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
+use measure::rotation::laws::{NUTATION_STEPS_S, TOPS, generic_body, nutation, nutation_factor, step_laws};
+use measure::rotation::long::{disc_runs, drift, long_run, long_starts};
+use measure::rotation::{Experiment, Rotation, Row, Scheme};
+use measure::study::Study;
 use reports::{Claim, Verdict};
-use studies::rotation::laws::{NUTATION_STEPS_S, TOPS, generic_body, nutation, nutation_factor, step_laws};
-use studies::rotation::long::{disc_runs, drift, long_run, long_starts};
-use studies::rotation::{Experiment, Rotation, Row, Scheme};
-use studies::study::Study;
 
 fn scheme(id: &str) -> Scheme {
     Scheme::from_id(id).unwrap_or_else(|| panic!("{id} is compared"))
@@ -174,7 +174,7 @@ fn what_a_step_says_it_conserves_it_conserves_to_rounding() {
 fn without_the_gyroscopic_term_energy_and_momentum_are_conserved_and_the_motion_is_wrong() {
     let wrong =
         Scheme::general(MethodId::SemiImplicitEuler, Storage::WithoutGyroscopicTerm, AttitudeUpdate::Exponential);
-    let scene = studies::scenes::by_id("torque-free-spin").expect("on the list");
+    let scene = scenes::by_id("torque-free-spin").expect("on the list");
     let end_s = scene.scene().info().horizon_s;
     let exact = scene.exact(integrator::Real::lit(end_s));
     let error = |scheme: Scheme, steps: u64| {

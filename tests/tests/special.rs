@@ -9,7 +9,7 @@
 use faer::fx128;
 use integrator::real::Single;
 use nalgebra::Complex;
-use studies::special::{carlson, elementary, elliptic, jacobi, kepler, kummer};
+use scenes::special::{carlson, elementary, elliptic, jacobi, kepler, kummer};
 use verification::table::{self, Entry};
 
 /// |value - truth| / (eps |scale|), infinite for NaN.

@@ -4,10 +4,10 @@ use faer::fx128;
 use integrator::real::{Real, Single};
 use nalgebra::Complex;
 use proptest::prelude::*;
-use studies::special::jacobi::{Jacobi, Modulus, am, jacobi};
-use studies::special::kepler::eccentric_anomaly;
-use studies::special::kummer::hypergeometric_1f1;
-use studies::special::{elementary, elliptic};
+use scenes::special::jacobi::{Jacobi, Modulus, am, jacobi};
+use scenes::special::kepler::eccentric_anomaly;
+use scenes::special::kummer::hypergeometric_1f1;
+use scenes::special::{elementary, elliptic};
 use verification::derivative;
 
 const EPS: f64 = <fx128 as Single>::EPSILON;

@@ -2,19 +2,20 @@
 
 use integrator::methods::MethodId;
 use reports::Verdict;
-use studies::run::Precision;
-use studies::scene::{AnyScene, StabilityLimit};
-use studies::scenes;
-use studies::stability::answer::substeps;
-use studies::stability::displaced::Stepping;
-use studies::stability::failure::{Failure, Signal};
-use studies::stability::judge::{Trend, looks, trend};
-use studies::stability::maps::{DAMPED, boundary_distance};
-use studies::stability::models::Scheme;
-use studies::stability::spin::{FACTOR_TOLERANCE, SpinScheme};
-use studies::stability::{Stability, amplification, claims, limits};
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
+use scenes::any::AnyScene;
+use scenes::run::Precision;
+use scenes::theory::StabilityLimit;
+
+use measure::stability::answer::substeps;
+use measure::stability::failure::{Failure, Signal};
+use measure::stability::judge::{Trend, looks, trend};
+use measure::stability::maps::{DAMPED, boundary_distance};
+use measure::stability::models::Scheme;
+use measure::stability::spin::{FACTOR_TOLERANCE, SpinScheme};
+use measure::stability::{Stability, amplification, claims, limits};
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
+use scenes::stepping::Stepping;
 
 fn scene(id: &str) -> Box<dyn AnyScene> {
     scenes::by_id(id).expect("a scene of the catalogue")
@@ -97,7 +98,7 @@ fn measured_brackets_contain_theory() {
             let scene = scene(id);
             let stepping = Stepping { scene: scene.as_ref(), method, precision };
             let theory = limit_of(id, method);
-            let studies::stability::bisect::Found::Bracket { low_s, high_s } = limits::measure(&stepping, theory)
+            let measure::stability::bisect::Found::Bracket { low_s, high_s } = limits::measure(&stepping, theory)
             else {
                 panic!("{id}: no bracket")
             };
@@ -198,7 +199,7 @@ fn substeps_are_the_fewest_that_are_stable() {
 #[test]
 fn every_claim_of_a_quick_study_holds() {
     let selection = Selection {
-        scenes: scenes::catalogue(),
+        scenes: scenes::all(),
         methods: MethodId::ALL.to_vec(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),

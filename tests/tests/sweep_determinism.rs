@@ -3,13 +3,13 @@
 //! Not seen here: other machines. The arithmetic is correctly rounded or taken from libm, which is what makes them agree.
 
 use integrator::methods::MethodId;
+use measure::convergence::Convergence;
+use measure::drift::DriftStudy;
 use reports::write_csv;
-use studies::convergence::Convergence;
-use studies::drift::DriftStudy;
-use studies::run::Precision;
-use studies::scenes;
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
+use scenes::run::Precision;
+
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
 
 fn selection() -> Selection {
     Selection {

@@ -5,8 +5,8 @@ use integrator::real::Single;
 use integrator::rotation::{Rotation, cross};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use studies::special::lagrange_top::LagrangeTop;
-use studies::special::sphere_torque::SphereTop;
+use scenes::special::lagrange_top::LagrangeTop;
+use scenes::special::sphere_torque::SphereTop;
 use verification::derivative;
 
 const EPS: f64 = <fx128 as Single>::EPSILON;

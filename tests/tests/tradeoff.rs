@@ -4,20 +4,20 @@
 use std::sync::OnceLock;
 
 use integrator::methods::MethodId;
+use programs::cli::Format;
 use proptest::prelude::*;
 use reports::{Verdict, read_csv, write_csv};
-use studies::cli::Format;
-use studies::run::{Outcome, Precision};
-use studies::scenes;
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
-use studies::tradeoff::candidate::{Candidate, candidates};
-use studies::tradeoff::front::front;
-use studies::tradeoff::iso::{Offer, offer, sweeps};
-use studies::tradeoff::ucurve::minima;
-use studies::tradeoff::vanish::{HEIGHTS_M, moves, predicted_s};
-use studies::tradeoff::verdict::{Factor, duels};
-use studies::tradeoff::{Charge, Part, Row, Tradeoff};
+use scenes::run::{Outcome, Precision};
+
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
+use measure::tradeoff::candidate::{Candidate, candidates};
+use measure::tradeoff::front::front;
+use measure::tradeoff::iso::{Offer, offer, sweeps};
+use measure::tradeoff::ucurve::minima;
+use measure::tradeoff::vanish::{HEIGHTS_M, moves, predicted_s};
+use measure::tradeoff::verdict::{Factor, duels};
+use measure::tradeoff::{Charge, Part, Row, Tradeoff};
 
 const SCENES: [&str; 5] = ["constant-force", "oscillator", "pendulum", "kepler", "tennis-racket"];
 
@@ -75,7 +75,7 @@ fn tables_and_charts_are_the_same_from_the_csv() {
     let again: Vec<Row> = read_csv(&csv, "tradeoff.csv").expect("what was written");
     assert_eq!(again, rows());
     let files =
-        |rows: &[Row]| studies::produce::from_rows::<Tradeoff>(rows, Format::Svg).expect("rows have a form").files;
+        |rows: &[Row]| programs::produce::from_rows::<Tradeoff>(rows, Format::Svg).expect("rows have a form").files;
     assert!(files(rows()) == files(&again));
 }
 

@@ -8,15 +8,15 @@ use std::io::Read;
 use flate2::read::GzDecoder;
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::Storage;
+use measure::convergence::{Convergence, Row};
 use rayon::prelude::*;
 use reports::write_csv;
+use scenes::run::Precision;
 use sha2::{Digest, Sha256};
-use studies::convergence::{Convergence, Row};
-use studies::run::Precision;
-use studies::scenes;
-use studies::study::{Selection, Study};
-use studies::sweep::Progress;
-use studies::teach::MODULE;
+
+use measure::study::{Selection, Study};
+use measure::sweep::Progress;
+use programs::teach::MODULE;
 use wasmi::{Engine, Instance, Linker, Memory, Module, Store};
 use web::answer::Desk;
 
@@ -223,7 +223,7 @@ fn the_rows_in_the_page_are_those_of_the_csv() {
     selection.scenes.push(scenes::by_id("heavy-top").expect("a scene that the page does not show"));
     let csv = write_csv(&Convergence::measure(&selection)).expect("flat rows");
     let page =
-        studies::teach::page(&csv, &["x0=1".to_owned()], &[("plan".to_owned(), "<all>".to_owned())]).expect("a page");
+        programs::teach::page(&csv, &["x0=1".to_owned()], &[("plan".to_owned(), "<all>".to_owned())]).expect("a page");
     let data = page.split("<script type=\"application/json\" id=\"data\">").nth(1).expect("the data");
     let data: serde_json::Value = serde_json::from_str(data.split("</script>").next().expect("its end")).expect("JSON");
     let name = |list: &str, place: &serde_json::Value| {
@@ -278,7 +278,7 @@ fn the_page_is_small_and_loads_nothing() {
     let rows = Convergence::measure(&selection());
     // 9 scenes, 6 methods, 13 steps, 3 precisions, 2 quantities.
     let whole: Vec<Row> = rows.iter().cycle().take(9 * 6 * 13 * 3 * 2).cloned().collect();
-    let page = studies::teach::page(&write_csv(&whole).expect("flat rows"), &[], &[]).expect("a page");
+    let page = programs::teach::page(&write_csv(&whole).expect("flat rows"), &[], &[]).expect("a page");
     assert!(page.len() <= 2_000_000, "{} bytes", page.len());
     for loader in
         ["src=", "url(", "@import", "<link", "<iframe", "fetch(", "import(", "XMLHttpRequest", "http:", "https:"]

@@ -1,11 +1,11 @@
 //! The integrator beside its peers, in one process. In this directory, on an idle machine:
 //!
 //! ```text
-//! cargo run --release -- --rounds 400 --csv ../../studies/data/peers.csv
+//! cargo run --release -- --rounds 400 --csv ../../studies/measure/data/peers.csv
 //! cargo run --release -- --problems /tmp/problems.json
 //! python3 -m venv /tmp/peers && /tmp/peers/bin/pip install heyoka mujoco numpy
-//! /tmp/peers/bin/python with_heyoka.py /tmp/problems.json ../../studies/data/peers.csv
-//! /tmp/peers/bin/python with_mujoco.py ../../studies/data/peers.csv
+//! /tmp/peers/bin/python with_heyoka.py /tmp/problems.json ../../studies/measure/data/peers.csv
+//! /tmp/peers/bin/python with_mujoco.py ../../studies/measure/data/peers.csv
 //! ```
 //!
 //! Same method and step: `ode_solvers` and `differential-equations` for RK4 and Euler, `rapier3d-f64` for a free body.

@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use faer::fx128;
 use integrator::{Real, Single};
-use studies::displaced::{Stepping, spectral_radius};
-use studies::error::Error;
-use studies::errors::{self, Truth};
-use studies::observation::{Observation, Value};
-use studies::run::{Outcome, Precision, Trajectory};
-use studies::scene::AnyScene;
-use studies::scenes;
+use scenes::any::AnyScene;
+use scenes::error::Error;
+use scenes::errors;
+use scenes::errors::Truth;
+use scenes::observation::{Observation, Value};
+use scenes::run::{Outcome, Precision, Trajectory};
+use scenes::stepping::{Stepping, spectral_radius};
 
 use crate::question::{Command, Question, Rule};
 

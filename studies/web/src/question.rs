@@ -2,8 +2,8 @@
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
-use studies::error::Error;
-use studies::run::{Precision, Run, method_from_id};
+use scenes::error::Error;
+use scenes::run::{Precision, Run, method_from_id};
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,0 +1,159 @@
+//! Rows against runs.
+
+use std::fmt::Write;
+
+use reports::{Table, Verdict};
+
+use super::candidate::Candidate;
+use super::known::Known;
+use super::numbers::{Measured, Runs};
+use super::row::Row;
+use super::stepper::Stepper;
+use measure::error::Error;
+use measure::sweep::{Progress, in_parallel};
+use scenes::run::Precision;
+
+/// A row and what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// The row.
+    pub row: Row,
+    /// What was measured.
+    pub measured: Measured,
+}
+
+impl Judged {
+    /// Holds inside the bounds. A run that failed and a number that does not exist are broken; what cannot be asked of a
+    /// candidate is not tested.
+    pub fn verdict(&self) -> Verdict {
+        match self.measured {
+            Measured::NotAsked => Verdict::NotTested,
+            Measured::Value(x) => Verdict::from_comparison(self.row.admits(x)),
+            _ => Verdict::Broken,
+        }
+    }
+
+    /// Whether it is broken.
+    pub fn is_broken(&self) -> bool {
+        self.verdict() == Verdict::Broken
+    }
+
+    /// By how much it is broken, in words: the distance from the bound, and as a part of the bound.
+    pub fn excess(&self) -> String {
+        let Some(x) = self.measured.value() else { return "no number".to_owned() };
+        let (beyond, bound, side) = if x > self.row.high {
+            (x - self.row.high, self.row.high, "above")
+        } else if x < self.row.low {
+            (self.row.low - x, self.row.low, "below")
+        } else if x.is_nan() {
+            return "NaN".to_owned();
+        } else {
+            return "inside".to_owned();
+        };
+        if bound == 0.0 {
+            format!("{beyond:.3e} {side} 0")
+        } else {
+            format!("{:.3} % {side}", 100.0 * beyond / bound.abs())
+        }
+    }
+
+    /// What changed since the bound was set, in words.
+    pub fn change(&self) -> String {
+        match self.measured.value() {
+            None => "was a number".to_owned(),
+            Some(x) if x == self.row.measured => "none".to_owned(),
+            Some(x) if self.row.measured == 0.0 || self.row.kind.is_exponent() => {
+                format!("{:+.3e}", x - self.row.measured)
+            }
+            Some(x) => format!("x {:.6}", x / self.row.measured),
+        }
+    }
+}
+
+/// Runs what the rows ask for, each scene, method and precision once, and judges every row. `candidate` says what stands in
+/// for the method of a group of rows.
+///
+/// # Errors
+/// A scene or a method that is none; rows that were read name no such.
+pub fn judge<'a>(
+    known: &Known,
+    rows: &[&Row],
+    progress: &Progress,
+    candidate: impl Fn(Stepper) -> Box<dyn Candidate + 'a> + Sync,
+) -> Result<Vec<Judged>, Error> {
+    let groups: Vec<&[&Row]> =
+        rows.chunk_by(|a, b| (&a.scene, &a.method, a.precision) == (&b.scene, &b.method, b.precision)).collect();
+    for group in &groups {
+        known.method(group[0])?;
+    }
+    let judged = in_parallel(
+        &groups,
+        |group| cost(group),
+        progress,
+        |group| -> Result<Vec<Judged>, Error> {
+            let candidate = candidate(known.method(group[0])?);
+            let runs = Runs::new(candidate.as_ref(), known.scene(group[0])?, group[0].precision);
+            Ok(group.iter().map(|&row| Judged { row: row.clone(), measured: runs.measure(row) }).collect())
+        },
+    );
+    Ok(judged.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// Evaluations of a group, more or less.
+fn cost(group: &[&Row]) -> u64 {
+    let precision = if group[0].precision == Precision::DoubleDouble { 30 } else { 1 };
+    let implicit = if group[0].method.starts_with("implicit") { 50 } else { 4 };
+    group.iter().map(|row| row.steps).max().unwrap_or(0) * precision * implicit
+}
+
+/// The broken rows, first those that are beyond their bounds by most; then how many rows of each kind hold.
+pub fn report(judged: &[Judged]) -> String {
+    let mut text = String::new();
+    let broken = broken(judged);
+    if !broken.rows.is_empty() {
+        text += &broken.to_text();
+        text.push('\n');
+    }
+    text += &summary(judged).to_text();
+    let of = |verdict| judged.iter().filter(|one| one.verdict() == verdict).count();
+    let counts = [Verdict::Holds, Verdict::Broken, Verdict::NotTested].map(of);
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "\n{} bounds hold, {} broken, {} not tested", counts[0], counts[1], counts[2]);
+    text
+}
+
+/// The broken rows: measured, bound, by how much, and what changed.
+pub fn broken(judged: &[Judged]) -> Table {
+    let headers = ["broken bound", "measured", "bound", "unit", "by", "change since it was set", "reason"];
+    let mut table = Table::new(&headers, &["measured"]);
+    let mut broken: Vec<&Judged> = judged.iter().filter(|one| one.is_broken()).collect();
+    broken.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    for one in broken {
+        let row = &one.row;
+        let bound = format!("{:.6e} … {:.6e}", row.low, row.high);
+        let cells =
+            [row.name(), one.measured.text(), bound, row.unit.clone(), one.excess(), one.change(), row.reason.clone()];
+        table.push(cells);
+    }
+    table
+}
+
+/// How far outside, in half widths of the interval; infinite where there is no number.
+fn distance(one: &Judged) -> f64 {
+    let (low, high) = (one.row.low, one.row.high);
+    let Some(x) = one.measured.value().filter(|x| x.is_finite()) else { return f64::INFINITY };
+    (low - x).max(x - high) / (high - low).max(f64::MIN_POSITIVE)
+}
+
+fn summary(judged: &[Judged]) -> Table {
+    let mut table = Table::new(&["kind", "holds", "broken", "not tested"], &["holds", "broken", "not tested"]);
+    for kind in super::row::Kind::ALL {
+        let of: Vec<Verdict> = judged.iter().filter(|one| one.row.kind == kind).map(Judged::verdict).collect();
+        let count = |verdict| of.iter().filter(|v| **v == verdict).count().to_string();
+        if !of.is_empty() {
+            let counts = [Verdict::Holds, Verdict::Broken, Verdict::NotTested].map(count);
+            table.push(std::iter::once(kind.id().to_owned()).chain(counts));
+        }
+    }
+    table
+}

@@ -1,0 +1,169 @@
+//! How wrong is it? The error against the step, and the order observed.
+
+mod envelope;
+mod figures;
+mod orders;
+
+pub use orders::{Measure, OrderRow, orders, tolerance};
+
+use integrator::methods::MethodId;
+use reports::{Claim, Figure};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::study::{Derived, Selection, Study};
+use crate::sweep::in_parallel;
+use scenes::any::AnyScene;
+use scenes::errors;
+use scenes::errors::{Errors, Truth};
+use scenes::observation::Quantity;
+use scenes::run::{Outcome, Precision, Trajectory};
+use scenes::theory::ExpectedOrder;
+
+/// Halvings of the step from the coarsest to the finest run.
+pub const HALVINGS: u32 = 12;
+/// The same with `--quick`.
+pub const QUICK_HALVINGS: u32 = 9;
+
+/// The error of one quantity in one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Scene or preset.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Number of steps.
+    pub steps: u64,
+    /// Step, s.
+    pub h_s: f64,
+    /// What was compared.
+    pub quantity: Quantity,
+    /// Unit of the errors.
+    pub unit: String,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// The first step that failed.
+    pub failed_step: Option<u64>,
+    /// Error at the end.
+    pub error_end: Option<f64>,
+    /// Largest error at 32 evenly spaced times.
+    pub error_max: Option<f64>,
+    /// Rounding error at the end: distance from the double-double run of the same step.
+    pub rounding_end: Option<f64>,
+    /// Largest rounding error at the same times.
+    pub rounding_max: Option<f64>,
+    /// Size of the quantity at the end of the exact motion, in the same unit.
+    pub scale: f64,
+    /// Evaluations of the force law.
+    pub evaluations: u64,
+    /// The order that theory predicts; empty where it predicts no error but rounding.
+    pub theory_order: Option<f64>,
+    /// Whether the error is only bounded by theory_constant h^theory_order, and jumps below it from step to step.
+    pub theory_is_envelope: bool,
+    /// lim error_end / h^order (or its bound) that theory predicts, where it does.
+    pub theory_constant: Option<f64>,
+}
+
+/// The study.
+pub struct Convergence;
+
+impl Study for Convergence {
+    type Row = Row;
+    const ID: &'static str = "convergence";
+    const ABOUT: &'static str = "Sweeps the step on scenes with exact solutions and measures the order of convergence";
+    const EXAMPLES: &'static str = "convergence --scene oscillator --method rk4
+        convergence --scene torque-free-spin --precision f64 --out /tmp/spin
+        convergence --scene oscillator --set stiffness=24 --steps 64,128,256,512
+        convergence --from target/convergence --format both";
+    const TITLE: &'static str = "How wrong is it? Convergence";
+    const INTRO: &'static str = "Each method runs each scene with a step that is halved again and again, in three precisions, \
+        and is compared with the exact motion. The slope of error against step is the observed order; where the slope ends \
+        in f32 and f64, rounding has taken over.";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        measure(selection)
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        Ok(vec![orders::table(rows)?])
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        figures::figures(rows)
+    }
+    fn is_on_page(figure: &Figure) -> bool {
+        figure.id.starts_with("convergence-") || figure.id == "precision-torque-free-spin-attitude"
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        orders::claims(rows)
+    }
+}
+
+struct Job<'a> {
+    scene: &'a dyn AnyScene,
+    truth: &'a Truth,
+    method: MethodId,
+    steps: u64,
+}
+
+/// Runs every scene, method and step in every precision.
+fn measure(selection: &Selection) -> Vec<Row> {
+    let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
+    let truths: Vec<Truth> =
+        in_parallel(&selection.scenes, |_| 1, &crate::sweep::Progress::silent(), |scene| Truth::of(scene.as_ref()));
+    let mut jobs = Vec::new();
+    for (scene, truth) in selection.scenes.iter().zip(&truths) {
+        for &method in &selection.methods {
+            let halved = (0..=halvings).map(|k| scene.scene().info().coarsest_steps << k);
+            let all_steps = if selection.steps.is_empty() { halved.collect() } else { selection.steps.clone() };
+            for steps in all_steps {
+                jobs.push(Job { scene: scene.as_ref(), truth, method, steps });
+            }
+        }
+    }
+    let cost = |job: &Job<'_>| job.steps * if job.method.is_implicit() { 20 } else { u64::from(job.method.order()) };
+    let rows = in_parallel(&jobs, cost, &selection.progress, |job| job.rows(&selection.precisions));
+    rows.into_iter().flatten().collect()
+}
+
+impl Job<'_> {
+    fn rows(&self, precisions: &[Precision]) -> Vec<Row> {
+        let run = |precision| errors::run(self.scene, self.method, precision, self.steps);
+        let reference = run(Precision::DoubleDouble);
+        let row = |&precision: &Precision| match precision {
+            Precision::DoubleDouble => self.compare(precision, &reference, &reference),
+            _ => self.compare(precision, &run(precision), &reference),
+        };
+        precisions.iter().flat_map(row).collect()
+    }
+
+    fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
+        let row = |errors: Errors| {
+            let theory = self.scene.scene().theory(self.method, errors.quantity);
+            Row {
+                scene: self.scene.id().to_owned(),
+                method: self.method.id().to_owned(),
+                precision,
+                steps: self.steps,
+                h_s: self.scene.scene().info().horizon_s / self.steps as f64,
+                quantity: errors.quantity,
+                unit: errors.quantity.unit().to_owned(),
+                outcome: run.outcome,
+                failed_step: run.failed_step,
+                error_end: errors.end,
+                error_max: errors.max,
+                rounding_end: errors.rounding_end,
+                rounding_max: errors.rounding_max,
+                scale: errors.scale,
+                evaluations: run.evaluations,
+                theory_order: match theory.order {
+                    ExpectedOrder::Exact => None,
+                    ExpectedOrder::Of(order) | ExpectedOrder::Envelope(order) => Some(order),
+                },
+                theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
+                theory_constant: theory.constant,
+            }
+        };
+        self.truth.compare(self.scene, self.steps, run, reference).into_iter().map(row).collect()
+    }
+}

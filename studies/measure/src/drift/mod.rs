@@ -1,0 +1,309 @@
+//! What is lost over a long run? Energy, momenta and the quaternion's norm against time, and the law of their growth.
+
+mod laws;
+mod show;
+
+pub use laws::{LawRow, laws};
+
+use faer::fx128;
+use integrator::methods::MethodId;
+use integrator::{Real, Single};
+use reports::{Claim, Figure};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::study::{Derived, Selection, Study};
+use crate::sweep::{Progress, in_parallel};
+use scenes::any::AnyScene;
+use scenes::invariants::{Balance, Entry};
+use scenes::observation::{Observation, norm};
+use scenes::run::{Outcome, Precision, Run};
+use scenes::theory::ExpectedGrowth;
+use scenes::theory::Law;
+
+/// Length of a run in natural time scales of the scene; a power of two.
+const TIME_SCALES: f64 = 1024.0;
+/// The same with `--quick`.
+const QUICK_TIME_SCALES: f64 = 128.0;
+/// Steps in one natural time scale.
+const STEPS_A_TIME_SCALE: u64 = 32;
+/// Rows of a run: each tells the least, the greatest and the last error of its stretch.
+const STRETCHES: u64 = 128;
+/// Observations in a stretch.
+const OBSERVATIONS: u64 = 16;
+/// The same with `--quick`.
+const QUICK_OBSERVATIONS: u64 = 8;
+
+/// What an error is taken of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Drift {
+    /// E - E*, J.
+    Energy,
+    /// |p| - |p*|, kg m/s.
+    MomentumNorm,
+    /// Angle between p and p*, rad.
+    MomentumDirection,
+    /// |L| - |L*|, kg m^2/s.
+    AngularMomentumNorm,
+    /// Angle between L and L*, rad.
+    AngularMomentumDirection,
+    /// |q| - 1.
+    QuaternionNorm,
+}
+
+impl Drift {
+    /// Every one.
+    pub const ALL: [Drift; 6] = [
+        Drift::Energy,
+        Drift::MomentumNorm,
+        Drift::MomentumDirection,
+        Drift::AngularMomentumNorm,
+        Drift::AngularMomentumDirection,
+        Drift::QuaternionNorm,
+    ];
+
+    /// The name in tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Drift::Energy => "energy",
+            Drift::MomentumNorm => "momentum-norm",
+            Drift::MomentumDirection => "momentum-direction",
+            Drift::AngularMomentumNorm => "angular-momentum-norm",
+            Drift::AngularMomentumDirection => "angular-momentum-direction",
+            Drift::QuaternionNorm => "quaternion-norm",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Drift::Energy => "J",
+            Drift::MomentumNorm => "kg m/s",
+            Drift::AngularMomentumNorm => "kg m^2/s",
+            Drift::MomentumDirection | Drift::AngularMomentumDirection => "rad",
+            Drift::QuaternionNorm => "1",
+        }
+    }
+}
+
+/// The error of one balance in one stretch of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Scene or preset.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Step, s.
+    pub h_s: f64,
+    /// What the error is of.
+    pub drift: Drift,
+    /// Unit of the errors.
+    pub unit: String,
+    /// Size of the balance at the start, in the same unit; 1 for an angle and for the quaternion.
+    pub scale: f64,
+    /// End of the stretch, s.
+    pub t_s: f64,
+    /// Least error in the stretch.
+    pub error_min: Option<f64>,
+    /// Greatest error in the stretch.
+    pub error_max: Option<f64>,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// When it failed, s.
+    pub failed_at_s: Option<f64>,
+    /// The law that theory predicts, where it does.
+    pub theory_law: Option<Law>,
+    /// Low end of what theory predicts: (value / start) of a bounded law, rate in 1/s of an exponential one.
+    pub theory_low: Option<f64>,
+    /// High end of the same.
+    pub theory_high: Option<f64>,
+}
+
+/// The study.
+pub struct DriftStudy;
+
+impl Study for DriftStudy {
+    type Row = Row;
+    const ID: &'static str = "drift";
+    const ABOUT: &'static str =
+        "Follows energy, momenta and the quaternion's norm over a long run and names the law of their growth";
+    const EXAMPLES: &'static str = "drift --scene oscillator --method rk4
+        drift --scene torque-free-spin --precision f64 --out /tmp/spin
+        drift --scene oscillator --set stiffness=24";
+    const TITLE: &'static str = "What is lost over a long run? Drift";
+    const INTRO: &'static str = "Energy, momenta and the quaternion's norm are followed for a thousand natural time scales \
+        of each scene, 32 steps each. The law by which an error grows tells more than its size: a bounded error stays harmless, \
+        a linear one does not, an exponential one ruins every run that is long enough.";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        let (scales, observations) =
+            if selection.quick { (QUICK_TIME_SCALES, QUICK_OBSERVATIONS) } else { (TIME_SCALES, OBSERVATIONS) };
+        let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
+        let tracks = in_parallel(&scenes, |_| 1, &Progress::silent(), |&scene| Track::of(scene, scales, observations));
+        let mut jobs = Vec::new();
+        for track in &tracks {
+            for &method in &selection.methods {
+                // Rounding is not the question here, except that a run without any shows a law undisturbed.
+                for &precision in selection.precisions.iter().filter(|p| **p != Precision::DoubleDouble) {
+                    jobs.push((track, method, precision));
+                }
+            }
+        }
+        let cost = |job: &(&Track<'_>, MethodId, Precision)| {
+            if job.1.is_implicit() { 20 } else { u64::from(job.1.order()) }
+        };
+        let rows =
+            in_parallel(&jobs, cost, &selection.progress, |&(track, method, precision)| track.rows(method, precision));
+        rows.into_iter().flatten().collect()
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        Ok(vec![laws::table(rows)?])
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        show::figures(rows)
+    }
+    fn is_on_page(figure: &Figure) -> bool {
+        figure.id.ends_with("-energy")
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        laws::claims(rows)
+    }
+}
+
+/// A long run of one scene, and the true account at each of its observations.
+struct Track<'a> {
+    scene: &'a dyn AnyScene,
+    h_s: f64,
+    steps: u64,
+    /// Steps from one observation to the next.
+    stride: u64,
+    /// One account, if all of it is conserved; else one for each observation.
+    truth: Vec<Vec<Entry>>,
+    kinds: Vec<Drift>,
+}
+
+impl<'a> Track<'a> {
+    fn of(scene: &'a dyn AnyScene, time_scales: f64, observations: u64) -> Self {
+        // Dyadic, so that every precision takes the same step.
+        let h_s = (scene.scene().info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
+        let steps = time_scales as u64 * STEPS_A_TIME_SCALE;
+        let stride = (steps / STRETCHES / observations).max(1);
+        let start = scene.exact(fx128::ZERO);
+        let first = scene.scene().account(fx128::ZERO, &start);
+        let at = |step: u64| {
+            let t = fx128::lit(step as f64 * h_s);
+            scene.scene().account(t, &scene.exact(t))
+        };
+        let conserved = first.iter().all(|entry| entry.conserved);
+        let norm = start.rotation().map(|_| Drift::QuaternionNorm);
+        let kinds = drifts(&first, &first).into_iter().map(|(drift, _)| drift).chain(norm).collect();
+        let truth = if conserved { vec![first] } else { (0..=steps / stride).map(|k| at(k * stride)).collect() };
+        Track { scene, h_s, steps, stride, truth, kinds }
+    }
+
+    fn errors(&self, step: u64, seen: &Observation) -> Vec<(Drift, f64)> {
+        let account = self.scene.scene().account(fx128::lit(step as f64 * self.h_s), seen);
+        let truth = if self.truth.len() == 1 { &self.truth[0] } else { &self.truth[(step / self.stride) as usize] };
+        let mut errors = drifts(&account, truth);
+        if seen.rotation().is_some() {
+            errors.push((Drift::QuaternionNorm, seen.norm_error));
+        }
+        errors
+    }
+
+    fn rows(&self, method: MethodId, precision: Precision) -> Vec<Row> {
+        let run = Run::new(method, precision, self.h_s * self.steps as f64, self.steps);
+        let trajectory = self.scene.run(&run, self.stride);
+        let seen = trajectory.seen.iter().skip(1);
+        let measured: Vec<(u64, Vec<(Drift, f64)>)> =
+            seen.map(|(step, seen)| (*step, self.errors(*step, seen))).collect();
+        let failed_at_s = trajectory.failed_step.map(|step| step as f64 * self.h_s);
+        let mut rows = Vec::new();
+        for (i, &drift) in self.kinds.iter().enumerate() {
+            let theory = self.theory(method, drift);
+            for stretch in 0..STRETCHES {
+                let [begin, end] = [stretch, stretch + 1].map(|k| self.steps * k / STRETCHES);
+                let inside = measured.partition_point(|(step, _)| *step <= begin)
+                    ..measured.partition_point(|(step, _)| *step <= end);
+                let values = measured[inside].iter().map(|(_, errors)| errors[i].1);
+                let complete = failed_at_s.is_none_or(|t| t > end as f64 * self.h_s);
+                let fold = |f: fn(f64, f64) -> f64| values.clone().reduce(f).filter(|_| complete);
+                rows.push(Row {
+                    scene: self.scene.id().to_owned(),
+                    method: method.id().to_owned(),
+                    precision,
+                    h_s: self.h_s,
+                    drift,
+                    unit: drift.unit().to_owned(),
+                    scale: scale(&self.truth[0], drift),
+                    t_s: end as f64 * self.h_s,
+                    error_min: fold(f64::min),
+                    error_max: fold(f64::max),
+                    outcome: trajectory.outcome,
+                    failed_at_s,
+                    theory_law: theory.map(|t| t.law),
+                    theory_low: theory.and_then(|t| t.bounds).map(|b| b[0]),
+                    theory_high: theory.and_then(|t| t.bounds).map(|b| b[1]),
+                });
+            }
+        }
+        rows
+    }
+
+    fn theory(&self, method: MethodId, drift: Drift) -> Option<ExpectedGrowth> {
+        let balance = match drift {
+            Drift::Energy => Balance::Energy,
+            Drift::MomentumNorm => Balance::Momentum,
+            Drift::AngularMomentumNorm => Balance::AngularMomentum,
+            _ => return None,
+        };
+        self.scene.scene().growth(method, balance, self.h_s)
+    }
+}
+
+/// Errors of an account against the true one, scalars as they are, vectors by norm and direction.
+pub fn drifts(seen: &[Entry], truth: &[Entry]) -> Vec<(Drift, f64)> {
+    let mut errors = Vec::new();
+    for (a, b) in seen.iter().zip(truth) {
+        let norms = || (norm(a.value.iter().copied()) - norm(b.value.iter().copied())).to_f64();
+        match a.balance {
+            Balance::Energy => errors.push((Drift::Energy, (a.value[0] - b.value[0]).to_f64())),
+            Balance::Momentum => {
+                errors.push((Drift::MomentumNorm, norms()));
+                errors.push((Drift::MomentumDirection, angle(&a.value, &b.value)));
+            }
+            Balance::AngularMomentum => {
+                errors.push((Drift::AngularMomentumNorm, norms()));
+                // A plane motion has one component, and no direction to lose.
+                if a.value.len() > 1 {
+                    errors.push((Drift::AngularMomentumDirection, angle(&a.value, &b.value)));
+                }
+            }
+        }
+    }
+    errors
+}
+
+/// The angle between two vectors by Kahan's formula, 2 atan2(|a/|a| - b/|b||, |a/|a| + b/|b||), accurate at 0 and at pi.
+fn angle(a: &[fx128], b: &[fx128]) -> f64 {
+    let (na, nb) = (norm(a.iter().copied()), norm(b.iter().copied()));
+    let pairs: Vec<(fx128, fx128)> = a.iter().zip(b).map(|(&x, &y)| (x / na, y / nb)).collect();
+    let difference = norm(pairs.iter().map(|(x, y)| *x - *y));
+    let sum = norm(pairs.iter().map(|(x, y)| *x + *y));
+    2.0 * difference.atan2(sum).to_f64()
+}
+
+/// Size of a balance at the start; 1 for an angle and for the quaternion.
+pub fn scale(reference: &[Entry], drift: Drift) -> f64 {
+    let balance = match drift {
+        Drift::Energy => Balance::Energy,
+        Drift::MomentumNorm => Balance::Momentum,
+        Drift::AngularMomentumNorm => Balance::AngularMomentum,
+        Drift::MomentumDirection | Drift::AngularMomentumDirection | Drift::QuaternionNorm => return 1.0,
+    };
+    let value = reference.iter().find(|entry| entry.balance == balance).map(|entry| norm(entry.value.iter().copied()));
+    value.map_or(1.0, Single::to_f64)
+}

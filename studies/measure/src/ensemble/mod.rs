@@ -1,0 +1,338 @@
+//! How wrong is it, from anywhere? The error over many starts of one law of motion instead of one.
+
+pub mod cost;
+pub mod draw;
+pub mod lanes;
+pub mod random;
+mod show;
+
+use std::ops::Range;
+
+use faer::fx128;
+use integrator::Real;
+use integrator::methods::MethodId;
+use reports::{Claim, Figure};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::study::{Derived, Selection, Study};
+use crate::sweep::in_parallel;
+use draw::{Members, draw, with_a_rule};
+use lanes::runs_in_lanes;
+use scenes::any::AnyScene;
+use scenes::observation::{Observation, Quantity};
+use scenes::run::Precision;
+use scenes::theory::ExpectedOrder;
+
+/// Halvings of the step from the coarsest to the finest run.
+const HALVINGS: u32 = 8;
+/// The same with `--quick`.
+const QUICK_HALVINGS: u32 = 5;
+/// Members of a job: enough that both cores are busy, few enough that no one waits for the last.
+const CHUNK: usize = 64;
+/// Members of an ensemble whose size nobody chose.
+pub const MEMBERS: usize = 256;
+/// The largest ensemble: each member takes about a kilobyte a scene.
+const MOST_MEMBERS: usize = 1 << 20;
+
+/// The errors of one quantity over an ensemble, with one method and step.
+///
+/// A member that failed is worse than every one that finished: a quantile that falls on it is empty, and never 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Scene or preset.
+    pub scene: String,
+    /// How its starts were drawn.
+    pub rule: String,
+    /// Seed of the starts.
+    pub seed: u64,
+    /// Method.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Number of steps.
+    pub steps: u64,
+    /// Step, s.
+    pub h_s: f64,
+    /// What was compared, at the end of the run.
+    pub quantity: Quantity,
+    /// Unit of the errors.
+    pub unit: String,
+    /// Members of the ensemble.
+    pub members: usize,
+    /// Members that left the finite numbers.
+    pub failed: usize,
+    /// The error that half of the members do not exceed.
+    pub median: Option<f64>,
+    /// The error that 95 % of the members do not exceed.
+    pub percentile_95: Option<f64>,
+    /// The largest error.
+    pub worst: Option<f64>,
+    /// Number of the member with the largest error, or of the first that failed; counted from 0.
+    pub worst_member: usize,
+    /// Its start, as parameters of the scene.
+    pub worst_start: String,
+    /// Largest size of the quantity among the exact motions at the end, in the same unit.
+    pub scale: f64,
+    /// The order that theory predicts for every start; empty where it predicts no error but rounding, or only a bound.
+    pub theory_order: Option<f64>,
+}
+
+/// The study.
+pub struct Ensemble;
+
+impl Study for Ensemble {
+    type Row = Row;
+    const ID: &'static str = "ensemble";
+    const TITLE: &'static str = "How wrong is it, from anywhere? Ensembles";
+    const INTRO: &'static str = "One start may be lucky. Here each scene is started from many states, drawn by its rule from a \
+        seed, and its errors at the end are ranked: the median, the 95th percentile and the worst, and where the worst one started. \
+        The members run in SIMD lanes and on all cores, with the bits they have alone. A member that fails ranks above all others.";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        measure(selection, MEMBERS, 1)
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        show::tables(rows)
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        show::figures(rows)
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        show::claims(rows)
+    }
+}
+
+/// Refuses a size or a choice that leaves nothing to be run.
+///
+/// # Errors
+<<<<<<< HEAD:studies/src/ensemble/mod.rs
+/// A size or a choice that leaves nothing to be run, named with what would be right.
+pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Format) -> Result<Product, Error> {
+=======
+/// What leaves nothing to be run, named with what would be right.
+pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error> {
+>>>>>>> main:studies/measure/src/ensemble/mod.rs
+    const PLACE: &str = "--ensemble";
+    if !(1..=MOST_MEMBERS).contains(&count) {
+        return Err(Error::plan(PLACE, format!("{count} members; give 1 to {MOST_MEMBERS}")));
+    }
+    if !selection.precisions.contains(&Precision::F64) {
+        return Err(Error::plan(PLACE, "lanes compute in f64; leave --precision out"));
+    }
+    if !selection.methods.iter().any(|&method| runs_in_lanes(method)) {
+        let lanes = MethodId::ALL.iter().filter(|&&method| runs_in_lanes(method)).map(|method| method.id());
+        let message = format!(
+            "an implicit step compares numbers, each member for itself, and does not run in lanes; give one of {}",
+            lanes.collect::<Vec<_>>().join(", ")
+        );
+        return Err(Error::plan(PLACE, message));
+    }
+    // A scene without a rule is left out among others; where nothing is left, it is said why.
+    let known = with_a_rule();
+    if let (Some(first), false) = (selection.scenes.first(), selection.scenes.iter().any(|s| known.contains(&s.id()))) {
+        draw(first.as_ref(), 1, seed)?;
+    }
+<<<<<<< HEAD:studies/src/ensemble/mod.rs
+    selection.progress.name(Ensemble::ID);
+    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), format)?;
+    let cost = cost::table(selection, count, seed)?;
+    let name = format!("{}.csv", cost.name);
+    product.files.push((name.clone(), cost.csv.into_bytes()));
+    product.section.blocks.push(Block::Table { caption: cost.caption.to_owned(), table: cost.table, csv: Some(name) });
+    Ok(product)
+}
+
+/// [`ensemble`] as a program does it: writes the files, and prints the tables before the claims.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run(common: &Common, count: usize, seed: u64) -> Result<Ending, Error> {
+    if common.from.is_some() {
+        let message = "draws states and runs them; the rows of a directory have none to be drawn: leave --from out";
+        return Err(Error::plan("--ensemble", message));
+    }
+    let mut selection = common.selection()?;
+    let out = OutputDir::create(common.out(Ensemble::ID))?;
+    let Product { files, section, claims } = ensemble(&mut selection, count, seed, common.format)?;
+    let judged = Judged { claims, manifest: Manifest::of(&common.plan) };
+    produce::write(&out, common, files, &judged.manifest)?;
+    Ending::of(common, &judged, |claims| {
+        let tables: String = section.blocks.iter().flat_map(tables).collect();
+        format!("{tables}{}", summary::verdicts(claims))
+    })
+}
+
+/// The tables of a block, also of those within a group, as text.
+fn tables(block: &Block) -> Vec<String> {
+    match block {
+        Block::Table { caption, table, .. } => vec![format!("{caption}\n\n{}\n", table.to_text())],
+        Block::Group { blocks, .. } => blocks.iter().flat_map(tables).collect(),
+        _ => Vec::new(),
+    }
+=======
+    Ok(())
+>>>>>>> main:studies/measure/src/ensemble/mod.rs
+}
+
+/// A scene with its members and their exact motions.
+struct Drawing<'a> {
+    scene: &'a dyn AnyScene,
+    members: Box<dyn Members>,
+    exact: Vec<Observation>,
+}
+
+struct Job<'a> {
+    drawing: &'a Drawing<'a>,
+    method: MethodId,
+    steps: u64,
+    members: Range<usize>,
+}
+
+/// The errors of one member, or `None` if it failed.
+type Errors = Option<Vec<(Quantity, f64)>>;
+
+/// The rows of every chosen scene, method and step that can run as an ensemble.
+pub fn measure(selection: &Selection, count: usize, seed: u64) -> Vec<Row> {
+    let drawings: Vec<Drawing<'_>> = selection
+        .scenes
+        .iter()
+        .filter_map(|scene| {
+            let members = draw(scene.as_ref(), count, seed).ok()?;
+            let end = fx128::lit(scene.scene().info().horizon_s);
+            let all: Vec<usize> = (0..count).collect();
+            let exact = in_parallel(&all, |_| 1, &crate::sweep::Progress::silent(), |&i| members.alone(i).exact(end));
+            Some(Drawing { scene: scene.as_ref(), members, exact })
+        })
+        .collect();
+    let mut sweeps = Vec::new();
+    for drawing in &drawings {
+        for &method in selection.methods.iter().filter(|&&method| runs_in_lanes(method)) {
+            sweeps.extend(steps(selection, drawing.scene).into_iter().map(|steps| (drawing, method, steps)));
+        }
+    }
+    let chunks: Vec<Range<usize>> = (0..count).step_by(CHUNK).map(|i| i..count.min(i + CHUNK)).collect();
+    let jobs: Vec<Job<'_>> = sweeps
+        .iter()
+        .flat_map(|&(drawing, method, steps)| {
+            chunks.iter().map(move |members| Job { drawing, method, steps, members: members.clone() })
+        })
+        .collect();
+    let cost = |job: &Job<'_>| job.steps * u64::from(job.method.order());
+    let done = in_parallel(&jobs, cost, &selection.progress, Job::errors);
+    let errors = done.chunks(chunks.len()).map(<[_]>::concat);
+    sweeps
+        .iter()
+        .zip(errors)
+        .flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e))
+        .collect()
+}
+
+fn steps(selection: &Selection, scene: &dyn AnyScene) -> Vec<u64> {
+    let halvings = if selection.quick { QUICK_HALVINGS } else { HALVINGS };
+    let halved = (0..=halvings).map(|k| scene.scene().info().coarsest_steps << k);
+    if selection.steps.is_empty() { halved.collect() } else { selection.steps.clone() }
+}
+
+impl Job<'_> {
+    fn errors(&self) -> Vec<Errors> {
+        let Drawing { scene, members, exact } = self.drawing;
+        let end_s = scene.scene().info().horizon_s;
+        let packs = self.members.clone().step_by(lanes::WIDTH).map(|i| i..self.members.end.min(i + lanes::WIDTH));
+        let ends = packs.flat_map(|pack| members.ends(pack, self.method, end_s, self.steps).unwrap_or_default());
+        let error = |(end, exact): (Option<Observation>, &Observation)| {
+            Some(end?.distances(exact)).filter(|errors| errors.iter().all(|(_, error)| error.is_finite()))
+        };
+        ends.zip(&exact[self.members.clone()]).map(error).collect()
+    }
+}
+
+fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: &[Errors]) -> Vec<Row> {
+    let scene = drawing.scene.scene();
+    let quantities = drawing.exact[0].values.iter().map(|(quantity, _)| *quantity);
+    let row = |quantity| {
+        let of = |errors: &Errors| Some(errors.as_ref()?.iter().find(|(q, _)| *q == quantity)?.1);
+        let ranked = Ranked::new(errors.iter().map(of));
+        let ExpectedOrder::Of(order) = scene.theory(method, quantity).order else { return (quantity, ranked, None) };
+        (quantity, ranked, Some(order))
+    };
+    quantities
+        .map(row)
+        .map(|(quantity, ranked, theory_order)| Row {
+            scene: drawing.scene.id().to_owned(),
+            rule: drawing.members.rule().to_owned(),
+            seed,
+            method: method.id().to_owned(),
+            precision: Precision::F64,
+            steps,
+            h_s: scene.info().horizon_s / steps as f64,
+            quantity,
+            unit: quantity.unit().to_owned(),
+            members: errors.len(),
+            failed: ranked.failed,
+            median: ranked.quantile(50),
+            percentile_95: ranked.quantile(95),
+            worst: ranked.quantile(100),
+            worst_member: ranked.worst_member,
+            worst_start: start(scene, drawing.members.alone(ranked.worst_member).scene()),
+            scale: drawing.exact.iter().map(|exact| exact.scale(quantity)).fold(0.0, f64::max),
+            theory_order,
+        })
+        .collect()
+}
+
+/// The parameters in which a member differs from its scene, as `--set` takes them.
+fn start(scene: &dyn scenes::scene::Scene, member: &dyn scenes::scene::Scene) -> String {
+    let both = scene.parameters().into_iter().zip(member.parameters());
+    let differing = both.filter(|(a, b)| a.value != b.value).map(|(_, b)| format!("{}={}", b.name, b.value));
+    differing.collect::<Vec<_>>().join(" ")
+}
+
+/// Errors in order, the failed above all others.
+struct Ranked {
+    finished: Vec<f64>,
+    failed: usize,
+    worst_member: usize,
+}
+
+impl Ranked {
+    fn new(errors: impl Iterator<Item = Option<f64>>) -> Self {
+        let errors: Vec<Option<f64>> = errors.collect();
+        let mut finished: Vec<f64> = errors.iter().flatten().copied().collect();
+        finished.sort_by(f64::total_cmp);
+        let rank = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
+        // The first of equals.
+        let worst = (0..errors.len()).rev().max_by(|&i, &j| rank(errors[i]).total_cmp(&rank(errors[j])));
+        Ranked { failed: errors.len() - finished.len(), finished, worst_member: worst.unwrap_or(0) }
+    }
+
+    /// The least error that `percent` % of all members do not exceed; `None` where that is a member that failed.
+    fn quantile(&self, percent: usize) -> Option<f64> {
+        let rank = ((self.finished.len() + self.failed) * percent).div_ceil(100);
+        self.finished.get(rank.max(1) - 1).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Fails if: a failed member is dropped before the ranks are counted, or ranks as 0.
+    #[test]
+    fn a_member_that_failed_ranks_above_all_others() {
+        let errors = [Some(3.0), None, Some(1.0), Some(2.0)];
+        let ranked = Ranked::new(errors.into_iter());
+        assert_eq!([25, 50, 75, 100].map(|p| ranked.quantile(p)), [Some(1.0), Some(2.0), Some(3.0), None]);
+        assert_eq!((ranked.failed, ranked.worst_member), (1, 1));
+        let none = Ranked::new([None, None].into_iter());
+        assert_eq!([1, 50, 100].map(|p| none.quantile(p)), [None; 3]);
+    }
+
+    // Fails if: the rank is rounded down, or the last of equals is named.
+    #[test]
+    fn quantiles_are_nearest_ranks_and_the_first_of_equals_is_the_worst() {
+        let ranked = Ranked::new([7.0, 7.0, 5.0].into_iter().map(Some));
+        assert_eq!([1, 33, 34, 66, 67, 95].map(|p| ranked.quantile(p)), [5.0, 5.0, 7.0, 7.0, 7.0, 7.0].map(Some));
+        assert_eq!((ranked.failed, ranked.worst_member), (0, 0));
+    }
+}

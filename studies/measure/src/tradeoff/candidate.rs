@@ -1,0 +1,155 @@
+//! What can be bought: a rule of a step, on a rigid body with what is stored.
+
+use integrator::methods::{MethodId, RigidStep};
+use integrator::rigid_body::{AttitudeUpdate, Storage};
+use reports::Marker;
+
+<<<<<<< HEAD:studies/src/tradeoff/candidate.rs
+use super::timed::{Lap, Laps};
+=======
+>>>>>>> main:studies/measure/src/tradeoff/candidate.rs
+use crate::rotation::orders::is_rigid;
+use crate::rotation::scheme::{Rule, Scheme};
+use crate::study::color_of;
+use scenes::any::AnyScene;
+use scenes::run::{Precision, Run, Trajectory};
+use scenes::timed::{Lap, Laps};
+
+/// One way to move a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Candidate {
+    /// The rule of a step, and what a rigid body stores.
+    pub scheme: Scheme,
+    /// Whether the scene is a rigid body, so that there is something to choose.
+    pub is_rigid: bool,
+}
+
+/// The number of steps and the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// End of the run, s.
+    pub end_s: f64,
+    /// Number of steps.
+    pub steps: u64,
+}
+
+/// Every way to move a scene with one of the methods. The steps that exist for rigid bodies only come with the full list.
+pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId]) -> Vec<Candidate> {
+    let is_rigid = is_rigid(scene);
+    if is_rigid { for_bodies(methods) } else { methods.iter().map(|&method| Candidate::flat(method)).collect() }
+}
+
+fn for_bodies(methods: &[MethodId]) -> Vec<Candidate> {
+    use AttitudeUpdate::Exponential;
+    let general = |storage| methods.iter().map(move |&method| Scheme::general(method, storage, Exponential));
+    let mut schemes: Vec<Scheme> = [Storage::WorldOmega, Storage::BodyOmega].into_iter().flat_map(general).collect();
+    if methods.len() == MethodId::ALL.len() {
+        schemes.extend(RigidStep::ALL.iter().map(|&step| Scheme::rigid(step, Exponential)));
+    }
+    schemes.into_iter().map(|scheme| Candidate { scheme, is_rigid: true }).collect()
+}
+
+impl Candidate {
+    fn flat(method: MethodId) -> Self {
+        let scheme = Scheme::general(method, Storage::WorldOmega, AttitudeUpdate::Exponential);
+        Candidate { scheme, is_rigid: false }
+    }
+
+    /// The name in rows: a method, on a rigid body with what is stored.
+    pub fn id(self) -> String {
+        match self.scheme.rule {
+            Rule::General(method) if !self.is_rigid => method.id().to_owned(),
+            _ => self.scheme.id(),
+        }
+    }
+
+    /// The candidate of that name.
+    pub fn from_id(id: &str) -> Option<Self> {
+        let mut all = MethodId::ALL.iter().map(|&method| Self::flat(method)).chain(for_bodies(MethodId::ALL));
+        all.find(|candidate| candidate.id() == id)
+    }
+
+    /// The name in a sentence.
+    pub fn label(self) -> String {
+        match self.scheme.rule {
+            Rule::General(method) if !self.is_rigid => method.title().to_owned(),
+            _ => self.scheme.label(),
+        }
+    }
+
+    /// The name of the rule alone, whatever is stored.
+    pub fn rule_id(self) -> &'static str {
+        match self.scheme.rule {
+            Rule::General(method) => method.id(),
+            Rule::Rigid(step) => step.id(),
+        }
+    }
+
+    /// The general method, if it is one.
+    pub fn method(self) -> Option<MethodId> {
+        match self.scheme.rule {
+            Rule::General(method) => Some(method),
+            Rule::Rigid(_) => None,
+        }
+    }
+
+    /// The palette index: a general method has its own in every chart, and two steps for rigid bodies share what is left.
+    pub fn color(self) -> usize {
+        match self.scheme.rule {
+            Rule::General(method) => color_of(method),
+            Rule::Rigid(step) => MethodId::ALL.len() + RigidStep::ALL.iter().position(|s| *s == step).unwrap_or(0) % 2,
+        }
+    }
+
+    /// The shape of a point where the colour alone does not tell the step for rigid bodies.
+    pub fn marker(self) -> Option<Marker> {
+        let Rule::Rigid(step) = self.scheme.rule else { return None };
+        let shared = RigidStep::ALL.iter().position(|s| *s == step).is_some_and(|i| i >= 2);
+        shared.then(|| Marker::ALL[(self.color() + 2) % Marker::ALL.len()])
+    }
+
+    /// Evaluations of the force law in a step, where the formula says so: an implicit step takes as many as it needs.
+    pub fn evaluations_a_step(self) -> Option<u64> {
+        match self.scheme.rule {
+            Rule::General(MethodId::ExplicitEuler | MethodId::SemiImplicitEuler) => Some(1),
+            Rule::General(MethodId::VelocityVerlet) => Some(2),
+            Rule::General(MethodId::Rk4) => Some(4),
+            Rule::General(MethodId::ImplicitEuler | MethodId::ImplicitMidpoint) => None,
+            Rule::Rigid(step) => Some(step.evaluations()),
+        }
+    }
+
+    /// One observed run; `None` for a step that the scene, which is no rigid body, cannot take.
+    pub fn run(self, scene: &dyn AnyScene, precision: Precision, span: Span, stride: u64) -> Option<Trajectory> {
+        let Scheme { rule, storage, update } = self.scheme;
+        match rule {
+            Rule::General(method) => {
+                Some(scene.run(&Run::new(method, precision, span.end_s, span.steps).storing(storage, update), stride))
+            }
+            Rule::Rigid(step) => {
+                scene.run_step(&Run::new(step, precision, span.end_s, span.steps).storing(storage, update), stride)
+            }
+        }
+    }
+
+    /// Whether [`Self::time`] has code for it, or, in double-double, the observed run stands in.
+    pub fn is_timed(self, precision: Precision) -> bool {
+        let of_body = !self.is_rigid || self.scheme.storage != Storage::WorldOmega;
+        match precision {
+            Precision::DoubleDouble => true,
+            Precision::F64 => of_body || !self.scheme.is_implicit(),
+            Precision::F32 => of_body && !self.scheme.is_implicit(),
+        }
+    }
+
+    /// One timed run; `None` for what is not compiled to be timed.
+    pub fn time(self, scene: &dyn AnyScene, precision: Precision, span: Span, laps: Laps) -> Option<Lap> {
+        let Scheme { rule, storage, update } = self.scheme;
+        match rule {
+            Rule::General(method) => {
+                scene.time(&Run::new(method, precision, span.end_s, span.steps).storing(storage, update), laps)
+            }
+            Rule::Rigid(step) => scene.time_step(&Run::new(step, precision, span.end_s, span.steps), laps),
+        }
+    }
+}

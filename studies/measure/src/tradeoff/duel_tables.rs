@@ -1,0 +1,163 @@
+//! The tables that hold semi-implicit Euler against the others.
+
+use std::cmp::Ordering;
+
+use reports::Table;
+use serde::Serialize;
+
+use super::candidate::Candidate;
+use super::iso::{LEVELS, Offer};
+use super::tables::charge_name;
+use super::verdict::{Between, Duel, Factor, duels};
+use super::{Charge, Row};
+use crate::error::Error;
+use crate::study::{Derived, short};
+use scenes::run::Precision;
+
+#[derive(Serialize)]
+pub(super) struct QuestionRow {
+    pub(super) error_level: f64,
+    pub(super) charge: Charge,
+    pub(super) scenes: usize,
+    pub(super) semi_implicit_is_best_or_level: usize,
+    pub(super) rk4_known: usize,
+    pub(super) semi_implicit_beats_rk4: usize,
+    pub(super) rk4_beats_semi_implicit: usize,
+    pub(super) median_rk4_over_semi_implicit: Option<f64>,
+    pub(super) implicit_euler_known: usize,
+    pub(super) semi_implicit_beats_implicit_euler: usize,
+    pub(super) median_implicit_euler_over_semi_implicit: Option<f64>,
+}
+
+/// How often semi-implicit Euler is the best buy.
+pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
+    let mut lines = Vec::new();
+    for charge in Charge::ALL {
+        let all = duels(rows, charge);
+        lines.extend(LEVELS.map(|level| question_row(&all, level, charge)));
+    }
+    let [a, b, c, d, e] =
+        ["scenes", "best buy, or level", "cheaper than RK4", "RK4 costs, median", "cheaper than implicit Euler"];
+    let mut table = Table::new(&["error (m, rad)", "charged in", a, b, c, d, e], &["error (m, rad)", a, b, c, d, e]);
+    for line in &lines {
+        table.push([
+            format!("{:.0e}", line.error_level),
+            charge_name(line.charge).to_owned(),
+            line.scenes.to_string(),
+            line.semi_implicit_is_best_or_level.to_string(),
+            format!("{} of {} known", line.semi_implicit_beats_rk4, line.rk4_known),
+            line.median_rk4_over_semi_implicit.map_or_else(|| "–".to_owned(), |x| format!("{} x", short(Some(x)))),
+            format!("{} of {} known", line.semi_implicit_beats_implicit_euler, line.implicit_euler_known),
+        ]);
+    }
+    Ok(Derived {
+        name: "tradeoff-question",
+        caption: "Is semi-implicit Euler good enough? On how many scenes it is the best buy at an error, and beside RK4 and \
+                  implicit Euler alone, where the sweeps reach far enough to tell; the price of RK4 as a part of its own, \
+                  where the median is no bound",
+        csv: reports::write_csv(&lines)?,
+        table,
+    })
+}
+
+/// The same at one error, over the scenes on which it was reached.
+pub(super) fn question_row(duels: &[Duel], error_level: f64, charge: Charge) -> QuestionRow {
+    let duels: Vec<&Duel> = duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
+    let over = |of: fn(&Duel) -> &Offer| -> Vec<Between> {
+        let all = duels.iter().map(|duel| Between::of(of(duel), &duel.semi_implicit));
+        all.filter(|factor| factor.beside_one().is_some()).collect()
+    };
+    let (rk4, implicit) = (over(|d| &d.rk4), over(|d| &d.implicit));
+    let count = |factors: &[Between], order| factors.iter().filter(|f| f.beside_one() == Some(order)).count();
+    QuestionRow {
+        error_level,
+        charge,
+        scenes: duels.len(),
+        semi_implicit_is_best_or_level: duels.iter().filter(|duel| duel.semi_implicit_is_best()).count(),
+        rk4_known: rk4.len(),
+        semi_implicit_beats_rk4: count(&rk4, Ordering::Greater),
+        rk4_beats_semi_implicit: count(&rk4, Ordering::Less),
+        median_rk4_over_semi_implicit: median(&rk4),
+        implicit_euler_known: implicit.len(),
+        semi_implicit_beats_implicit_euler: count(&implicit, Ordering::Greater),
+        median_implicit_euler_over_semi_implicit: median(&implicit),
+    }
+}
+
+/// The factor in the middle; `None` where a bound sits there: the medians of the lower and the upper bounds enclose it.
+fn median(factors: &[Between]) -> Option<f64> {
+    let middle = |bound: fn(&Between) -> f64| {
+        let mut bounds: Vec<f64> = factors.iter().map(bound).collect();
+        bounds.sort_by(f64::total_cmp);
+        bounds.get(bounds.len() / 2).copied()
+    };
+    middle(|factor| factor.low).filter(|low| low.is_finite() && middle(|factor| factor.high) == Some(*low))
+}
+
+#[derive(Serialize)]
+struct DuelRow {
+    scene: String,
+    error_level: f64,
+    charge: Charge,
+    semi_implicit: Option<f64>,
+    semi_implicit_is: &'static str,
+    best: Option<f64>,
+    best_method: String,
+    best_precision: Option<Precision>,
+    rk4: Option<f64>,
+    implicit_euler: Option<f64>,
+    semi_implicit_over_best: String,
+}
+
+/// On each scene and at each error: is semi-implicit Euler the best buy, and if not, by what is it beaten?
+pub(super) fn semi_implicit(rows: &[Row], charge: Charge) -> Result<Derived, Error> {
+    let all = duels(rows, charge);
+    let cost = |offer: &Offer| if let Offer::At(price) = offer { Some(price.cost) } else { None };
+    let line = |duel: &Duel| DuelRow {
+        scene: duel.scene.clone(),
+        error_level: duel.level,
+        charge,
+        semi_implicit: match &duel.semi_implicit {
+            Offer::At(price) | Offer::Above(price) => Some(price.cost),
+            Offer::Never => None,
+        },
+        semi_implicit_is: match &duel.semi_implicit {
+            Offer::At(_) => "met",
+            Offer::Above(_) => "more than this",
+            Offer::Never => "never",
+        },
+        best: duel.best.as_ref().map(|best| best.cost),
+        best_method: duel.best.as_ref().map_or_else(String::new, |best| best.method.clone()),
+        best_precision: duel.best.as_ref().map(|best| best.precision),
+        rk4: cost(&duel.rk4),
+        implicit_euler: cost(&duel.implicit),
+        semi_implicit_over_best: duel.beaten_by().map_or_else(String::new, Factor::show),
+    };
+    let headers = ["scene", "1e-1", "1e-2", "1e-3", "1e-4", "1e-6"];
+    let mut table = Table::new(&headers, &[]);
+    for of_scene in all.chunk_by(|a, b| a.scene == b.scene) {
+        table.push(std::iter::once(of_scene[0].scene.clone()).chain(of_scene.iter().map(cell)));
+    }
+    let lines: Vec<DuelRow> = all.iter().map(line).collect();
+    let (name, caption) = match charge {
+        Charge::Evaluations => (
+            "tradeoff-semi-implicit-evaluations",
+            "Semi-implicit Euler charged in evaluations: the best buy at this error (m, rad), or by what factor it is beaten, \
+             and by what",
+        ),
+        Charge::Time => ("tradeoff-semi-implicit-time", "The same charged in time on this machine"),
+    };
+    Ok(Derived { name, caption, csv: reports::write_csv(&lines)?, table })
+}
+
+fn cell(duel: &Duel) -> String {
+    let Some((best, factor)) = duel.best.as_ref().zip(duel.beaten_by()) else { return "none reaches it".to_owned() };
+    if duel.semi_implicit_is_best() {
+        return "best buy".to_owned();
+    }
+    let title = Candidate::from_id(&best.method).map_or_else(String::new, |c| match c.method() {
+        Some(method) => method.title().to_owned(),
+        None => c.label(),
+    });
+    format!("{} x {title}", factor.show())
+}

@@ -1,0 +1,162 @@
+//! Work-precision diagrams and U-curves.
+
+use integrator::methods::MethodId;
+use integrator::rigid_body::Storage;
+use reports::{Axis, Figure, Layer, Line, Series};
+
+use super::candidate::Candidate;
+use super::iso::sweeps;
+use super::ucurve::{INDEPENDENT, Minimum, SHOWN, minima};
+use super::{Charge, Part, Row};
+use crate::names::scene_title;
+use crate::rotation::Rule;
+use crate::study::{color_of, command};
+use scenes::run::Precision;
+
+/// The charts on the page; the others are linked.
+pub(super) const ON_PAGE: [&str; 5] = [
+    "work-evaluations-pendulum",
+    "work-time-pendulum",
+    "work-time-kepler",
+    "work-time-tennis-racket",
+    "u-curve-tennis-racket",
+];
+
+/// Errors above this are no errors of a method that follows the motion at all.
+const LARGEST_ERROR: f64 = 10.0;
+
+pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
+    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
+    let minima = minima(rows);
+    let mut figures = Vec::new();
+    for of_scene in runs.chunk_by(|a, b| a.scene == b.scene) {
+        let sweeps = sweeps(of_scene);
+        figures.extend(Charge::ALL.into_iter().filter_map(|charge| work(&sweeps, charge)));
+        let of_scene: Vec<&Minimum> = minima.iter().filter(|m| m.scene == of_scene[0].scene).collect();
+        figures.extend(u_curve(&sweeps, &of_scene));
+    }
+    figures
+}
+
+fn work(sweeps: &[Vec<&Row>], charge: Charge) -> Option<Figure> {
+    let layers: Vec<Layer> = sweeps.iter().filter_map(|sweep| series(sweep, charge)).map(Layer::Series).collect();
+    let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
+    let scene = first.scene.as_str();
+    let (id, title, y, caption) = match charge {
+        Charge::Evaluations => (
+            "evaluations",
+            "error against evaluations",
+            "evaluations of the force up to the horizon",
+            "Lower is cheaper, further left is more accurate: the lowest line at an error is the best buy. Counted exactly, in \
+             f64. A method without any error on this scene has no line.",
+        ),
+        Charge::Time => (
+            "time",
+            "error against time",
+            "time for a simulated second (ns)",
+            "The same charged in time, least over the rounds, with a whisker up to the upper quartile: what a step costs beside \
+             its evaluations counts too. Of this machine and this run. A method without any error on this scene has no line.",
+        ),
+    };
+    Some(Figure {
+        id: format!("work-{id}-{}", scene.replace('/', "-")),
+        title: format!("{}: {title}, f64", scene_title(scene)),
+        caption: caption.to_owned(),
+        x: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
+        y: Axis::log(y),
+        layers,
+        command: command("tradeoff", scene),
+        data: "tradeoff.csv".to_owned(),
+        ..Figure::default()
+    })
+}
+
+/// One line of a chart; `None` for what it does not show.
+fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
+    let candidate = Candidate::from_id(&sweep[0].method).filter(|c| is_shown(*c, charge))?;
+    if sweep[0].precision != Precision::F64 {
+        return None;
+    }
+    let shown: Vec<(&Row, [f64; 2])> = sweep
+        .iter()
+        .filter_map(|row| {
+            let error = row.scored().filter(|e| *e > 0.0 && *e <= LARGEST_ERROR)?;
+            Some((*row, [error, charge.of(row)?]))
+        })
+        .collect();
+    if shown.is_empty() {
+        return None;
+    }
+    let whisker = |row: &Row| Some([row.least_ns_per_step? / row.h_s, row.upper_ns_per_step? / row.h_s]);
+    let whiskers = match charge {
+        Charge::Evaluations => Vec::new(),
+        Charge::Time => shown.iter().filter_map(|(row, _)| whisker(row)).collect(),
+    };
+    let line = match (candidate.scheme.rule, candidate.scheme.storage) {
+        (Rule::Rigid(_), _) => Line::Dotted,
+        (Rule::General(_), Storage::WorldOmega) if candidate.is_rigid => Line::Dashed,
+        _ => Line::Solid,
+    };
+    let series = Series::new(candidate.label(), candidate.color(), shown.iter().map(|(_, point)| *point).collect());
+    Some(Series { whiskers, line: Some(line), marker: candidate.marker().or(series.marker), ..series })
+}
+
+/// Of a rigid body every method with the angular velocity of the body; with that of the world, of which only the time differs with
+/// semi-implicit Euler, two for comparison.
+fn is_shown(candidate: Candidate, charge: Charge) -> bool {
+    let of_world = candidate.is_rigid && candidate.scheme.storage == Storage::WorldOmega;
+    match candidate.method() {
+        Some(method) if of_world => {
+            charge == Charge::Time && matches!(method, MethodId::SemiImplicitEuler | MethodId::Rk4)
+        }
+        _ => true,
+    }
+}
+
+fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
+    let mut layers = Vec::new();
+    for sweep in sweeps {
+        let first = sweep[0];
+        let Some(candidate) = Candidate::from_id(&first.method) else { continue };
+        let Some(method) = candidate.method().filter(|m| SHOWN.contains(m)) else { continue };
+        if candidate.is_rigid && candidate.scheme.storage != Storage::BodyOmega {
+            continue;
+        }
+        let Some(minimum) = minima.iter().find(|m| m.method == first.method && m.precision == first.precision) else {
+            continue;
+        };
+        let points = sweep
+            .iter()
+            .filter_map(|row| Some([row.h_s, row.scored().filter(|e| *e > 0.0 && *e <= LARGEST_ERROR)?]))
+            .collect();
+        let line = if first.precision == Precision::F32 { Line::Solid } else { Line::Dashed };
+        let name = format!("{}, {}", method.title(), first.precision.id());
+        layers.push(Layer::Series(Series { line: Some(line), ..Series::new(name, color_of(method), points) }));
+        layers.push(model(minimum, sweep));
+    }
+    let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
+    Some(Figure {
+        id: format!("u-curve-{}", first.scene.replace('/', "-")),
+        title: format!("{}: where a smaller step is worse", scene_title(&first.scene)),
+        caption: "Truncation falls with the step, rounding grows with the number of steps, and between them lies the best step. \
+                  Lines without marks are an estimate to which nothing was fitted, A / n^p + eps S sqrt(n) / 10: independent roundings. \
+                  Where roundings add up instead, as on many rigid bodies in f32, the measured error lies above it."
+            .to_owned(),
+        x: Axis::log("step size h (s)"),
+        y: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
+        layers,
+        command: command("tradeoff", &first.scene),
+        data: "tradeoff.csv".to_owned(),
+        ..Figure::default()
+    })
+}
+
+/// Truncation and independent roundings, over the steps of a sweep.
+fn model(minimum: &Minimum, sweep: &[&Row]) -> Layer {
+    let rounding = INDEPENDENT * minimum.precision.epsilon() * sweep[0].scale.unwrap_or(1.0);
+    let point = |row: &&Row| {
+        let n = row.steps as f64;
+        [row.h_s, minimum.truncation / n.powi(minimum.order as i32) + rounding * n.sqrt()]
+    };
+    Layer::Curve { name: String::new(), points: sweep.iter().map(point).collect(), color: None }
+}

@@ -1,0 +1,193 @@
+//! What does accuracy cost? Work-precision: error against evaluations, and against time.
+//!
+//! Times are the only numbers of a report that are not the same from run to run. They stand in the rows of this study alone,
+//! and no claim rests on them.
+
+pub mod advice;
+pub mod candidate;
+mod claims;
+pub mod clock;
+mod cost_tables;
+mod duel_tables;
+mod figures;
+pub mod front;
+pub mod iso;
+pub mod limit;
+mod peers;
+pub mod runs;
+pub mod search;
+mod speak;
+mod tables;
+pub mod truth;
+pub mod ucurve;
+pub mod vanish;
+pub mod verdict;
+
+use reports::{Claim, Figure};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::study::{Derived, Selection, Study};
+use scenes::run::{Outcome, Precision};
+
+/// What a row belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// A run with its error, its evaluations and the time of its steps.
+    Run,
+    /// The same run timed with ever more steps, for the cost of a step.
+    Length,
+    /// The step below which a body at rest does not begin to fall.
+    Vanish,
+}
+
+/// One run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// What the row belongs to.
+    pub part: Part,
+    /// Scene or preset.
+    pub scene: String,
+    /// Method, on a rigid body with what is stored.
+    pub method: String,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Number of steps.
+    pub steps: u64,
+    /// Step, s.
+    pub h_s: f64,
+    /// Unit of the errors.
+    pub unit: String,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Error at the end.
+    pub error_end: Option<f64>,
+    /// Largest error at 32 evenly spaced times, the end among them.
+    pub error: Option<f64>,
+    /// Largest distance from the run of the same step in the next finer arithmetic, at the same times.
+    pub rounding: Option<f64>,
+    /// The largest size of the configuration in the exact motion, in the same unit; 1 for an attitude.
+    pub scale: Option<f64>,
+    /// Evaluations of the force law.
+    pub evaluations: u64,
+    /// Number of steps of the run that was timed.
+    pub timed_steps: Option<u64>,
+    /// Time of a step, least over the rounds.
+    pub least_ns_per_step: Option<f64>,
+    /// The same, median.
+    pub median_ns_per_step: Option<f64>,
+    /// The same, upper quartile.
+    pub upper_ns_per_step: Option<f64>,
+    /// The same in cycles of the clock chain of the same round, least.
+    pub cycles_per_step: Option<f64>,
+    /// Height at which a body is let go.
+    pub position_m: Option<f64>,
+    /// The largest step tried after which it has not moved.
+    pub at_rest_h_s: Option<f64>,
+    /// The smallest step tried after which it has.
+    pub moving_h_s: Option<f64>,
+    /// The step between the two by theory.
+    pub theory_h_s: Option<f64>,
+}
+
+/// The study.
+pub struct Tradeoff;
+
+impl Study for Tradeoff {
+    type Row = Row;
+    const ID: &'static str = "tradeoff";
+    const ABOUT: &'static str = "Charges methods for their errors, in evaluations and in time. With --error or --budget-us it gives advice for a \
+        scene, which is run before it is given, and writes no files. Errors are the largest over the run: of positions in m, of attitudes \
+        and angles in rad, the larger where a scene has both";
+    const EXAMPLES: &'static str =
+        "tradeoff                                                       the whole study, into target/tradeoff/
+        tradeoff --scene pendulum --error 1e-3                         the cheapest method, precision and step
+        tradeoff --scene pendulum --budget-us 5                        the least error for 5 us of computing a simulated second
+        tradeoff --scene tennis-racket --error 1e-3 --for 60 --rate 60 every method in a loop of 60 frames a second, for a minute
+        tradeoff --scene kepler --error 1e-3 --method semi-implicit-euler
+        tradeoff --ensemble 1000 --scene torque-free-spin              errors over many starts instead of one";
+    const TITLE: &'static str = "What does accuracy cost? Work-precision";
+    const INTRO: &'static str = "Every method, in three precisions and on rigid bodies with what is stored, is charged for its \
+        error twice: in evaluations of the force law, which are counted and the same on every machine, and in time, which was \
+        measured on this one, apart from the runs that gave the errors. The error is the largest at 32 times up to the horizon, of \
+        positions in m and of angles in rad.";
+
+    fn measure(selection: &Selection) -> Vec<Row> {
+        let mut rows = runs::errors(selection);
+        rows.extend(vanish::rows(selection));
+        runs::time(selection, &mut rows);
+        rows
+    }
+    fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
+        tables::all(rows)
+    }
+    fn figures(rows: &[Row]) -> Vec<Figure> {
+        figures::all(rows)
+    }
+    fn is_on_page(figure: &Figure) -> bool {
+        figures::ON_PAGE.contains(&figure.id.as_str())
+    }
+    fn claims(rows: &[Row]) -> Vec<Claim> {
+        claims::all(rows)
+    }
+}
+
+impl Row {
+    /// A row of which nothing is known yet.
+    fn new(part: Part, scene: &str, method: String, precision: Precision, steps: u64, h_s: f64) -> Self {
+        Row {
+            part,
+            scene: scene.to_owned(),
+            method,
+            precision,
+            steps,
+            h_s,
+            unit: String::new(),
+            outcome: Outcome::Finished,
+            error_end: None,
+            error: None,
+            rounding: None,
+            scale: None,
+            evaluations: 0,
+            timed_steps: None,
+            least_ns_per_step: None,
+            median_ns_per_step: None,
+            upper_ns_per_step: None,
+            cycles_per_step: None,
+            position_m: None,
+            at_rest_h_s: None,
+            moving_h_s: None,
+            theory_h_s: None,
+        }
+    }
+
+    /// The error of a run that counts: it finished, and its error is a number.
+    pub fn scored(&self) -> Option<f64> {
+        let scores = self.part == Part::Run && self.outcome == Outcome::Finished;
+        self.error.filter(|error| scores && error.is_finite())
+    }
+}
+
+/// What a run is charged in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Charge {
+    /// Evaluations of the force law up to the horizon.
+    Evaluations,
+    /// Time for a simulated second, ns: the least over the rounds.
+    Time,
+}
+
+impl Charge {
+    /// Both.
+    pub const ALL: [Charge; 2] = [Charge::Evaluations, Charge::Time];
+
+    /// What a run costs. Evaluations do not know what arithmetic costs: only f64 is charged in them.
+    pub fn of(self, row: &Row) -> Option<f64> {
+        match self {
+            Charge::Evaluations => (row.precision == Precision::F64).then_some(row.evaluations as f64),
+            Charge::Time => row.least_ns_per_step.map(|ns| ns / row.h_s),
+        }
+    }
+}

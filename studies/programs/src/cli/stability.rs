@@ -1,0 +1,44 @@
+//! The flags that put a question about stability.
+
+use clap::Args;
+use measure::stability::answer::{Answer, Question, answer};
+
+use super::{Common, Ending};
+use measure::error::Error;
+
+/// A step, or a rate, to be judged: positive numbers, as the flags are read.
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "What to ask")]
+pub struct Flags {
+    /// A step to be judged, s
+    #[arg(long = "step", value_name = "S", value_parser = seconds_a_step, allow_hyphen_values = true)]
+    pub step_s: Option<f64>,
+    /// Frames a second: how many substeps does each need?
+    #[arg(long = "rate", value_name = "HZ", value_parser = frames_a_second, allow_hyphen_values = true)]
+    pub rate_hz: Option<f64>,
+}
+
+fn seconds_a_step(text: &str) -> Result<f64, String> {
+    positive(text, "seconds, such as 0.01")
+}
+
+fn frames_a_second(text: &str) -> Result<f64, String> {
+    positive(text, "frames a second, such as 60")
+}
+
+fn positive(text: &str, such_as: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+    number.ok_or_else(|| format!("not a positive number; give {such_as}"))
+}
+
+/// The answer, where the flags put a question: a step, a rate, or a scene with a method.
+pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
+    let (plan, question) = (&common.plan, Question { step_s: flags.step_s, rate_hz: flags.rate_hz });
+    let asked =
+        question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
+    asked.then(|| {
+        common.answers()?;
+        let Answer { text, stable } = answer(&common.selection()?, question);
+        Ok(Ending { text, note: None, code: u8::from(!stable) })
+    })
+}

@@ -1,0 +1,12 @@
+//! The programs: command line, plans, files, the report's page and the teaching page.
+
+pub mod cli;
+mod findings;
+pub mod formulas;
+pub mod page;
+pub mod plan;
+pub mod produce;
+pub mod provenance;
+mod reference;
+pub mod summary;
+pub mod teach;

@@ -1,0 +1,194 @@
+//! What is run. The same keys on the command line, in a plan file and in a report's manifest.
+
+use std::path::Path;
+
+use clap::Args;
+use integrator::methods::MethodId;
+use serde::{Deserialize, Serialize};
+
+use measure::error::Error;
+use scenes::any::AnyScene;
+use scenes::run::{Precision, method_from_id};
+
+use measure::study::{Selection, distinct};
+use measure::sweep::Progress;
+
+/// All that decides the numbers of a run, and nothing else: the same plan gives the same bytes, but for times. An empty list
+/// means all.
+#[derive(Args, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "What to run")]
+pub struct Plan {
+    /// Scene, or scene/preset, to look at; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub scene: Vec<String>,
+
+    /// Method to look at; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub method: Vec<String>,
+
+    /// Arithmetic: f32, f64 or double-double; may be given again [default: all]
+    #[arg(long, value_name = "ID")]
+    pub precision: Vec<String>,
+
+    /// Set a parameter of every chosen scene that has it; may be given again
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+
+    /// Numbers of steps of a sweep, at least 1 each [default: 12 halvings from the scene's coarsest]
+    #[arg(long, value_name = "N,N,..", value_delimiter = ',', value_parser = steps, allow_hyphen_values = true)]
+    pub steps: Vec<u64>,
+
+    /// One preset of each scene, fewer halvings and shorter runs
+    #[arg(long)]
+    pub quick: bool,
+}
+
+const STEPS_REMEDY: &str = "a run has at least 1 step; give numbers such as 64,128,256";
+
+fn steps(text: &str) -> Result<u64, String> {
+    text.trim().parse().ok().filter(|&n| n > 0).ok_or_else(|| format!("not a number of steps; {STEPS_REMEDY}"))
+}
+
+/// The head of every plan file that is written.
+const HEAD: &str = "# What was run. `--plan plan.toml` runs it again; an empty list means all.\n";
+
+impl Plan {
+    /// The plan in a TOML file: the flags' long names are its keys, and each may be left out.
+    ///
+    /// # Errors
+    /// A file that cannot be read; with the line, an unknown key or a value of another kind; a plan that cannot be run.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let place = path.display();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Error::plan(place.to_string(), format!("cannot be read: {error}; give the plan.toml of a report"))
+        })?;
+        let plan: Plan = toml::from_str(&text).map_err(|error| {
+            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            let message = error.message().trim_end().replace('\n', ", ");
+            Error::plan(format!("{place}:{line}"), format!("{message}; the keys of a plan are {}", Self::keys()))
+        })?;
+        plan.selection().map_err(|error| Error::plan(place.to_string(), error.to_string()))?;
+        Ok(plan)
+    }
+
+    fn keys() -> &'static str {
+        "scene, method, precision, set (lists of texts), steps (a list of numbers) and quick (true or false)"
+    }
+
+    /// The plan as TOML.
+    ///
+    /// # Errors
+    /// None that is known: every value has a form in TOML.
+    pub fn to_toml(&self) -> Result<String, Error> {
+        let text = toml::to_string(self).map_err(|error| Error::plan("plan".to_owned(), error.to_string()))?;
+        Ok(format!("{HEAD}{text}"))
+    }
+
+    /// This plan with what `flags` give in its place: a list given replaces the list, a parameter set replaces the one of
+    /// that name, `--quick` is added.
+    #[must_use]
+    pub fn overridden_by(self, flags: Plan) -> Plan {
+        fn either<T>(flags: Vec<T>, plan: Vec<T>) -> Vec<T> {
+            if flags.is_empty() { plan } else { flags }
+        }
+        let name = |setting: &String| setting.split('=').next().unwrap_or_default().to_owned();
+        let given: Vec<String> = flags.set.iter().map(name).collect();
+        let kept = self.set.into_iter().filter(|setting| !given.contains(&name(setting)));
+        Plan {
+            scene: either(flags.scene, self.scene),
+            method: either(flags.method, self.method),
+            precision: either(flags.precision, self.precision),
+            set: kept.chain(flags.set.iter().cloned()).collect(),
+            steps: either(flags.steps, self.steps),
+            quick: self.quick || flags.quick,
+        }
+    }
+
+    /// The flags beside `--scene` that run this plan again on one scene (on all where it is `None`), with a blank before each.
+    pub(crate) fn flags(&self, scene: Option<&str>) -> String {
+        let mut flags = String::new();
+        let mut add = |flag: &str, values: &[String]| {
+            flags.extend(values.iter().map(|value| format!(" --{flag} {value}")));
+        };
+        add("method", &self.method);
+        add("precision", &self.precision);
+        // A parameter that the scene lacks would be refused.
+        let takes = |setting: &&String| {
+            let Some((scene, (name, value))) = scene.zip(setting.split_once('=')) else { return false };
+            scenes::by_id(scene).is_ok_and(|mut known| known.scene_mut().set(scene, name, value).is_ok())
+        };
+        add("set", &self.set.iter().filter(takes).cloned().collect::<Vec<_>>());
+        let steps: Vec<String> = self.steps.iter().map(u64::to_string).collect();
+        add("steps", &if steps.is_empty() { Vec::new() } else { vec![steps.join(",")] });
+        if self.quick {
+            flags += " --quick";
+        }
+        flags
+    }
+
+    /// The scenes, methods and precisions that it names.
+    ///
+    /// # Errors
+    /// An unknown name, a parameter outside its range, or a number of steps that is zero.
+    pub fn selection(&self) -> Result<Selection, Error> {
+        if self.steps.contains(&0) {
+            return Err(Error::plan("steps".to_owned(), STEPS_REMEDY.to_owned()));
+        }
+        let mut chosen = if self.scene.is_empty() {
+            let mut all = scenes::all();
+            if self.quick {
+                // One preset of each scene.
+                all.dedup_by_key(|scene| scene.id().split('/').next());
+            }
+            all
+        } else {
+            distinct(&self.scene).into_iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
+        };
+        self.apply_settings(&mut chosen)?;
+        Ok(Selection {
+            scenes: chosen,
+            methods: named(&self.method, method_from_id, MethodId::ALL)?,
+            precisions: named(&self.precision, Precision::from_id, &Precision::ALL)?,
+            steps: distinct(self.steps.iter().copied()),
+            quick: self.quick,
+            progress: Progress::silent(),
+        })
+    }
+
+    fn apply_settings(&self, chosen: &mut [Box<dyn AnyScene>]) -> Result<(), Error> {
+        for setting in &self.set {
+            let (name, value) = setting.split_once('=').ok_or_else(|| {
+                let message = format!("'{setting}' is not of the form NAME=VALUE; `list SCENE` shows the names");
+                Error::plan("set".to_owned(), message)
+            })?;
+            let mut refusal = None;
+            let mut taken = false;
+            for scene in chosen.iter_mut() {
+                let id = scene.id();
+                match scene.scene_mut().set(id, name, value) {
+                    Ok(()) => taken = true,
+                    // Another scene may have the parameter; a wrong value is wrong at once.
+                    Err(error @ scenes::error::Error::UnknownName { .. }) => refusal = Some(error),
+                    Err(error) => return Err(error.into()),
+                }
+            }
+            if let (false, Some(error)) = (taken, refusal) {
+                return Err(error.into());
+            }
+        }
+        Ok(chosen.iter().try_for_each(|scene| scene.scene().check())?)
+    }
+}
+
+/// The values of the given names in the order given, each once; all values if no name is given.
+fn named<V: Copy + PartialEq>(
+    names: &[String],
+    by_name: impl Fn(&str) -> Result<V, scenes::error::Error>,
+    all: &[V],
+) -> Result<Vec<V>, Error> {
+    if names.is_empty() {
+        return Ok(all.to_vec());
+    }
+    Ok(distinct(names.iter().map(|name| by_name(name)).collect::<Result<Vec<_>, _>>()?))
+}

@@ -1,0 +1,237 @@
+//! From a plan to files: rows, tables, figures, claims, one page. Nothing is written before everything is known.
+
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+use reports::{Block, Claim, Figure, OutputDir, Section};
+
+use crate::cli::{Common, Format};
+use crate::page;
+use crate::plan::Plan;
+<<<<<<< HEAD:studies/src/produce.rs
+use crate::provenance::{self, Manifest};
+use crate::rotation::Rotation;
+use crate::stability::Stability;
+use crate::study::{self, Derived, Selection, Study};
+=======
+use crate::provenance;
+use crate::provenance::Manifest;
+>>>>>>> main:studies/programs/src/produce.rs
+use crate::teach;
+use measure::adequacy::Adequacy;
+use measure::convergence::Convergence;
+use measure::drift::DriftStudy;
+use measure::error::Error;
+use measure::rotation::Rotation;
+use measure::stability::Stability;
+use measure::study::{Derived, Selection, Study};
+use measure::tradeoff::Tradeoff;
+
+/// What a study has made: files to be written, and its part of the page.
+pub struct Product {
+    /// Name and content of each file.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Its part of the page.
+    pub section: Section,
+    /// Its verdicts.
+    pub claims: Vec<Claim>,
+}
+
+/// The directory of the whole report, below `target/`.
+pub const REPORT: &str = "report";
+
+/// Claims, and where the rows come from that they were judged by.
+pub struct Judged {
+    /// Its verdicts.
+    pub claims: Vec<Claim>,
+    /// Where the rows come from.
+    pub manifest: Manifest,
+}
+
+/// Where rows come from, and in which form charts are wanted.
+pub struct Source {
+    rows: Rows,
+    format: Format,
+    manifest: Manifest,
+}
+
+enum Rows {
+    Measured(Box<Selection>),
+    Files(PathBuf),
+}
+
+impl Source {
+    /// What the flags ask for.
+    ///
+    /// # Errors
+    /// Bad input, named with its place and its remedy.
+    pub fn of(common: &Common) -> Result<Self, Error> {
+        if common.format != Format::Svg && !reports::DRAWS_PNG {
+            let message = "this program draws no PNG; build it with `cargo build --release --features png`";
+            return Err(Error::plan("--format", message));
+        }
+        let selection = common.selection()?;
+        let (rows, manifest) = match &common.from {
+            Some(directory) => (Rows::Files(directory.clone()), Manifest::read(directory)?),
+            None => (Rows::Measured(Box::new(selection)), Manifest::of(&common.plan)),
+        };
+        Ok(Source { rows, format: common.format, manifest })
+    }
+
+    fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
+        match &mut self.rows {
+            Rows::Measured(selection) => {
+                selection.progress.name(S::ID);
+                Ok(S::measure(selection))
+            }
+            Rows::Files(directory) => {
+                let path = directory.join(format!("{}.csv", S::ID));
+                Ok(reports::read_csv(&provenance::read(&path)?, &path.display().to_string())?)
+            }
+        }
+    }
+
+    /// Measures or reads the rows of one study and makes all that follows from them.
+    ///
+    /// # Errors
+    /// Rows that cannot be read, or that have no form as text; figures that cannot be drawn.
+    pub fn product<S: Study>(&mut self) -> Result<Product, Error> {
+        let product = from_rows::<S>(&self.rows::<S>()?, self.format)?;
+        Ok(by_plan(product, &self.manifest.plan))
+    }
+
+    /// Every study of the report, in its order: measured one after the other, each on all cores, and then drawn and judged
+    /// side by side.
+    ///
+    /// # Errors
+    /// As [`Self::product`].
+    pub fn all(&mut self) -> Result<Vec<Product>, Error> {
+        let format = self.format;
+        let mut made: Vec<Making> = Vec::new();
+        macro_rules! measure {
+            ($($study:ty),*) => {$(
+                let rows = self.rows::<$study>()?;
+                made.push(Box::new(move || from_rows::<$study>(&rows, format)));
+            )*};
+        }
+        measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Tradeoff);
+        let plan = &self.manifest.plan;
+        made.into_par_iter().map(|make| Ok(by_plan(make()?, plan))).collect()
+    }
+}
+
+/// The product with the plan's flags in the commands under its charts.
+fn by_plan(mut product: Product, plan: &Plan) -> Product {
+    fn complete(block: &mut Block, plan: &Plan) {
+        match block {
+            Block::Figure { figure, .. } => figure.command = study::by_plan(&figure.command, plan),
+            Block::Group { blocks, .. } => blocks.iter_mut().for_each(|block| complete(block, plan)),
+            _ => {}
+        }
+    }
+    product.section.blocks.iter_mut().for_each(|block| complete(block, plan));
+    product
+}
+
+/// What follows from the rows of one study, still to be made.
+type Making = Box<dyn FnOnce() -> Result<Product, Error> + Send>;
+
+/// All that follows from the rows of a study, without running anything.
+///
+/// # Errors
+/// Rows or figures that have no form as text.
+pub fn from_rows<S: Study>(rows: &[S::Row], format: Format) -> Result<Product, Error> {
+    let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?.into_bytes())];
+    let claims = S::claims(rows);
+    let claims_csv = format!("{}-claims.csv", S::ID);
+    files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
+    let (mut blocks, mut linked) = (Vec::new(), Vec::new());
+    for (figure, svg, drawn) in drawn(S::figures(rows), format)? {
+        files.extend(drawn);
+        if S::is_on_page(&figure) {
+            blocks.push(Block::Figure { figure, svg });
+        } else {
+            linked.push((figure.title, format!("{}.{}", figure.id, format.ending())));
+        }
+    }
+    if !linked.is_empty() {
+        blocks.push(Block::Links { caption: "More charts".to_owned(), files: linked });
+    }
+    blocks.push(Block::Claims(claims.clone()));
+    for Derived { name, caption, csv, table } in S::tables(rows)? {
+        files.push((format!("{name}.csv"), csv.into_bytes()));
+        blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
+    }
+    let section = page::section::<S>(blocks);
+    Ok(Product { files, section, claims })
+}
+
+/// A figure, its drawing for the page, and its files.
+type Drawn = (Figure, String, Vec<(String, Vec<u8>)>);
+
+fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
+    let draw = |figure: Figure| {
+        let svg = reports::svg(&figure)?;
+        let mut files = Vec::new();
+        if format != Format::Png {
+            files.push((format!("{}.svg", figure.id), svg.clone().into_bytes()));
+        }
+        if format != Format::Svg {
+            files.push((format!("{}.png", figure.id), reports::png(&svg, &figure.id)?));
+        }
+        Ok((figure, svg, files))
+    };
+    figures.into_par_iter().map(draw).collect()
+}
+
+/// Makes what the flags ask for of one study and writes its files.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn study<S: Study>(common: &Common) -> Result<Judged, Error> {
+    let mut source = Source::of(common)?;
+    let out = OutputDir::create(common.out(S::ID))?;
+    let Product { files, claims, .. } = source.product::<S>()?;
+    write(&out, common, files, &source.manifest)?;
+    Ok(Judged { claims, manifest: source.manifest })
+}
+
+/// Writes the files with plan and manifest, or of the files the charts alone.
+pub(crate) fn write(
+    out: &OutputDir,
+    common: &Common,
+    mut files: Vec<(String, Vec<u8>)>,
+    manifest: &Manifest,
+) -> Result<(), Error> {
+    files.push((provenance::PLAN.to_owned(), manifest.plan.to_toml()?.into_bytes()));
+    files.push((provenance::MANIFEST.to_owned(), manifest.to_json()?.into_bytes()));
+    if common.figures_only {
+        files.retain(|(name, _)| name.ends_with(".svg") || name.ends_with(".png"));
+    }
+    Ok(out.write_all(&files)?)
+}
+
+/// Makes the whole report and writes it.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn report(common: &Common) -> Result<Judged, Error> {
+    let mut source = Source::of(common)?;
+    let out = OutputDir::create(common.out(REPORT))?;
+    let products = source.all()?;
+    let (mut files, mut sections, mut claims) = (Vec::new(), Vec::new(), Vec::new());
+    for product in products {
+        files.extend(product.files);
+        sections.push(product.section);
+        claims.extend(product.claims);
+    }
+    let rows = files.iter().find(|(name, _)| name == "convergence.csv").map_or(&[][..], |(_, csv)| csv);
+    let (plan, about) = (&source.manifest.plan, source.manifest.lines());
+    let teaching = teach::page(&String::from_utf8_lossy(rows), &plan.set, &about)?;
+    files.push((teach::FILE.to_owned(), teaching.into_bytes()));
+    let scenes = plan.selection()?.scenes;
+    let html = page::html(sections, &scenes, about)?;
+    files.push(("index.html".to_owned(), html.into_bytes()));
+    write(&out, common, files, &source.manifest)?;
+    Ok(Judged { claims, manifest: source.manifest })
+}

@@ -1,0 +1,107 @@
+//! A mass on a spring with a damper: m x'' = -k x - c x'.
+//!
+//! With g = c / (2 m), w^2 = k / m and the motions C, S of `oscillation.rs`: x = e^(-g t) (x0 C + (v0 + g x0) S),
+//! v = e^(-g t) (v0 C - (g v0 + w^2 x0) S), one formula below, at and above critical damping.
+
+use faer::fx128;
+use integrator::methods::MethodId;
+use integrator::{Model, Real, Single, State};
+use nalgebra::Vector1;
+
+use crate::catalogue::oscillation::Oscillation;
+use crate::invariants::{Balance, Entry};
+use crate::motion::Motion;
+use crate::observation::{Observation, Quantity};
+use crate::parameters::scene_parameters;
+use crate::scene::{Info, Scene};
+use crate::theory::{StabilityLimit, Theory};
+
+scene_parameters! {
+    /// A mass on a spring with a damper; the default is under-damped, zeta = 1/8.
+    pub struct DampedOscillator {
+        /// Mass.
+        mass: f64 = 1.5, "kg", Positive;
+        /// Stiffness of the spring.
+        stiffness: f64 = 6.0, "N/m", Positive;
+        /// Damping ratio c / (2 sqrt(k m)).
+        zeta: f64 = 0.125, "1", NonNegative;
+        /// Displacement at the start.
+        x0: f64 = 0.75, "m", Finite;
+        /// Velocity at the start.
+        v0: f64 = -1.25, "m/s", Finite;
+    }
+}
+
+impl DampedOscillator {
+    /// zeta = 1, exactly.
+    pub fn critical() -> Self {
+        DampedOscillator { zeta: 1.0, ..Self::default() }
+    }
+
+    /// zeta = 5/2.
+    pub fn over_damped() -> Self {
+        DampedOscillator { zeta: 2.5, ..Self::default() }
+    }
+
+    /// c = 2 zeta sqrt(k m), kg/s.
+    fn damping<T: Real>(&self) -> T {
+        T::lit(2.0 * self.zeta) * (T::lit(self.stiffness) * T::lit(self.mass)).sqrt()
+    }
+
+    fn oscillation(&self) -> Oscillation {
+        let mass = fx128::lit(self.mass);
+        Oscillation {
+            decay: self.damping::<fx128>() / (mass + mass),
+            square: fx128::lit(self.stiffness) / mass,
+            force: fx128::ZERO,
+            drive: fx128::ZERO,
+            x0: fx128::lit(self.x0),
+            v0: fx128::lit(self.v0),
+        }
+    }
+}
+
+impl<T: Real> Model<T> for DampedOscillator {
+    type Config = Vector1<T>;
+
+    #[inline(always)]
+    fn rate(&self, _t: T, s: &State<Vector1<T>>) -> Vector1<T> {
+        (s.q * T::lit(self.stiffness) + s.v * self.damping::<T>()) / -T::lit(self.mass)
+    }
+}
+
+impl<T: Single> Motion<T> for DampedOscillator {
+    fn exact(&self, t: T) -> State<Vector1<T>> {
+        self.oscillation().at(t)
+    }
+    fn observe(&self, s: &State<Vector1<T>>) -> Observation {
+        Observation::particles(s)
+    }
+}
+
+impl Scene for DampedOscillator {
+    fn info(&self) -> Info {
+        Info {
+            about: "a damped mass on a spring: under-damped, critical (a double root) or over-damped (two rates)",
+            equation: r"m\,\ddot x = -k\,x - c\,\dot x,\quad c = 2\zeta\sqrt{k\,m}",
+            source: "elementary",
+            horizon_s: 2.75,
+            time_scale_s: (self.mass / self.stiffness).sqrt(),
+            coarsest_steps: 8,
+        }
+    }
+
+    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+        let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
+        let twice = fx128::lit(self.mass) * v * v + fx128::lit(self.stiffness) * x * x;
+        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.zeta == 0.0 }]
+    }
+
+    fn theory(&self, method: MethodId, quantity: Quantity) -> Theory {
+        self.oscillation().linear().theory(method, quantity, self.info().horizon_s)
+    }
+
+    fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
+        Some(self.oscillation().stability_limit(method))
+    }
+}

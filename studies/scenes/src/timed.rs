@@ -1,0 +1,137 @@
+//! The time of a step: unobserved, uncounted, compiled for the one scene, method and storage, with no virtual call in it.
+//!
+//! Compiled in f64 are all methods with the angular velocity of the body, and the explicit ones with that of the world; in f32
+//! the explicit ones with that of the body.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use integrator::methods::{
+    ExplicitEuler, MethodId, RigidStep, RigidVisitor, Rk4, SemiImplicitEuler, VelocityVerlet, Visitor,
+};
+use integrator::rigid_body::{AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WorldOmega};
+use integrator::{Method, Model, Single, State, Vector, drive};
+
+use crate::motion::{Motion, RigidMotion};
+use crate::run::Run;
+
+/// How often a run is repeated from its start within one timing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Laps(pub u32);
+
+/// What a timing gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lap {
+    /// Time of all laps, ns.
+    pub ns: f64,
+    /// The first component of the last stored velocity: whoever has it has taken the steps.
+    pub checksum: f64,
+}
+
+/// Times a run of a scene that is its own model, with every method.
+pub(crate) fn particles<S: Motion<f64>>(scene: &S, run: &Run, laps: Laps) -> Lap {
+    run.method.visit(Watch { model: scene, start: scene.exact(0.0), pace: Pace::of(run, laps) })
+}
+
+/// The same with the explicit methods, in any arithmetic; `None` for an implicit one.
+pub(crate) fn particles_explicit<T: Single, S: Motion<T>>(scene: &S, run: &Run, laps: Laps) -> Option<Lap> {
+    explicit(run.method, Watch { model: scene, start: scene.exact(T::lit(0.0)), pace: Pace::of(run, laps) })
+}
+
+/// Times a run of a rigid body that stores an angular velocity; `None` for another storage, and for an implicit method that
+/// stores that of the world.
+pub(crate) fn body<B: RigidMotion<f64>>(body: &B, run: &Run, laps: Laps) -> Option<Lap> {
+    let (start, pace) = (body.exact(0.0), Pace::of(run, laps));
+    match run.storage {
+        Storage::WorldOmega => {
+            let model = WorldOmega::<&B>::new(body);
+            explicit(run.method, Watch { model: &model, start: model.state(&start), pace })
+        }
+        Storage::BodyOmega => {
+            let model = BodyOmega::<&B>::new(body);
+            Some(run.method.visit(Watch { model: &model, start: model.state(&start), pace }))
+        }
+        _ => None,
+    }
+}
+
+/// The same with the explicit methods and the angular velocity of the body, in any arithmetic; `None` for anything else.
+pub(crate) fn body_explicit<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, laps: Laps) -> Option<Lap> {
+    if run.storage != Storage::BodyOmega {
+        return None;
+    }
+    let model = BodyOmega::<&B>::new(body);
+    explicit(
+        run.method,
+        Watch { model: &model, start: model.state(&body.exact(T::lit(0.0))), pace: Pace::of(run, laps) },
+    )
+}
+
+/// As [`MethodId::visit`], and compiles no implicit method: they are the larger part of a build, and in f32 and with the angular
+/// velocity of the world nobody asks for their time.
+fn explicit<T: Single, M: Model<T>>(method: MethodId, watch: Watch<'_, T, M>) -> Option<Lap> {
+    Some(match method {
+        MethodId::ExplicitEuler => watch.visit(&ExplicitEuler),
+        MethodId::SemiImplicitEuler => watch.visit(&SemiImplicitEuler),
+        MethodId::VelocityVerlet => watch.visit(&VelocityVerlet),
+        MethodId::Rk4 => watch.visit(&Rk4),
+        MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => return None,
+    })
+}
+
+/// Times a run with a step that exists for rigid bodies only.
+pub(crate) fn step<T: Single, B: RigidMotion<T>>(body: &B, run: &Run<RigidStep>, laps: Laps) -> Lap {
+    let turn = Turn { start: body.exact(T::lit(0.0)), pace: Pace::of(run, laps) };
+    run.method.visit::<T, _, _>(AttitudeUpdate::Exponential, body, turn)
+}
+
+#[derive(Clone, Copy)]
+struct Pace {
+    end_s: f64,
+    steps: u64,
+    laps: Laps,
+}
+
+impl Pace {
+    fn of<A>(run: &Run<A>, laps: Laps) -> Self {
+        Pace { end_s: run.end_s, steps: run.steps, laps }
+    }
+
+    fn time<T: Single, M: Model<T>, A: Method<T, M>>(self, method: &A, model: &M, start: State<M::Config>) -> Lap {
+        let h = T::lit(self.end_s) / T::lit(self.steps as f64);
+        let mut checksum = f64::NAN;
+        let clock = Instant::now();
+        for _ in 0..self.laps.0 {
+            let end = drive::advance(method, black_box(model), black_box(start), black_box(h), self.steps);
+            checksum = black_box(end.map_or(f64::NAN, |s| s.v.component(0).to_f64()));
+        }
+        Lap { ns: clock.elapsed().as_secs_f64() * 1e9, checksum }
+    }
+}
+
+struct Watch<'a, T: Single, M: Model<T>> {
+    model: &'a M,
+    start: State<M::Config>,
+    pace: Pace,
+}
+
+impl<T: Single, M: Model<T>> Visitor<T, M> for Watch<'_, T, M> {
+    type Output = Lap;
+
+    fn visit<A: Method<T, M>>(self, method: &A) -> Lap {
+        self.pace.time(method, self.model, self.start)
+    }
+}
+
+struct Turn<T: Single, P> {
+    start: Kinematics<T, P>,
+    pace: Pace,
+}
+
+impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<T, B::Position> {
+    type Output = Lap;
+
+    fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Lap {
+        self.pace.time(method, model, model.state(&self.start))
+    }
+}

@@ -1,7 +1,0 @@
-//! The whole report: every study, one page.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    studies::cli::report()
-}
