@@ -96,20 +96,9 @@ pub fn color_of(method: MethodId) -> usize {
     MethodId::ALL.iter().position(|m| *m == method).unwrap_or(0)
 }
 
-/// The command that makes a figure of one scene again, or one of all where it is `None`.
-pub fn command(study: &str, scene: Option<&str>) -> String {
-    let of_scene = scene.map_or_else(String::new, |scene| format!("{OF_SCENE}{scene}"));
-    format!("cargo run --release --bin {study}{of_scene}")
-}
-
-const OF_SCENE: &str = " -- --scene ";
-
-/// A [`command`] with the plan's flags, too: what is read under a chart makes that very chart.
-pub(crate) fn by_plan(command: &str, plan: &Plan) -> String {
-    let scene = command.split_once(OF_SCENE).map(|(_, scene)| scene);
-    let flags = plan.flags(scene);
-    let separator = if scene.is_some() || flags.is_empty() { "" } else { " --" };
-    format!("{command}{separator}{flags}")
+/// The command that makes a figure of one scene again.
+pub fn command(study: &str, scene: &str) -> String {
+    format!("cargo run --release --bin {study} -- --scene {scene}")
 }
 
 /// The different values, in the order in which they first appear.

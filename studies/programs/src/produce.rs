@@ -8,15 +8,8 @@ use reports::{Block, Claim, Figure, OutputDir, Section};
 use crate::cli::{Common, Format};
 use crate::page;
 use crate::plan::Plan;
-<<<<<<< HEAD:studies/src/produce.rs
-use crate::provenance::{self, Manifest};
-use crate::rotation::Rotation;
-use crate::stability::Stability;
-use crate::study::{self, Derived, Selection, Study};
-=======
 use crate::provenance;
 use crate::provenance::Manifest;
->>>>>>> main:studies/programs/src/produce.rs
 use crate::teach;
 use measure::adequacy::Adequacy;
 use measure::convergence::Convergence;
@@ -120,11 +113,18 @@ impl Source {
     }
 }
 
-/// The product with the plan's flags in the commands under its charts.
+/// The product with commands that name the plan's flags, too: what is read under a chart makes that very chart.
 fn by_plan(mut product: Product, plan: &Plan) -> Product {
     fn complete(block: &mut Block, plan: &Plan) {
         match block {
-            Block::Figure { figure, .. } => figure.command = study::by_plan(&figure.command, plan),
+            Block::Figure { figure, .. } => {
+                let scene = figure.command.split_once("--scene ").map(|(_, scene)| scene);
+                let separator = if scene.is_none() && !figure.command.contains(" -- ") { " --" } else { "" };
+                let flags = plan.flags(scene);
+                if !flags.is_empty() {
+                    figure.command += &format!("{separator}{flags}");
+                }
+            }
             Block::Group { blocks, .. } => blocks.iter_mut().for_each(|block| complete(block, plan)),
             _ => {}
         }

@@ -44,29 +44,17 @@ impl Truth {
     }
 
     /// Evaluates the exact motion of a scene at k T / `looks`.
-<<<<<<< HEAD:studies/src/errors.rs
-    pub(crate) fn up_to(scene: &dyn AnyScene, end_s: f64, looks: u64) -> Self {
-=======
     pub fn up_to(scene: &dyn AnyScene, end_s: f64, looks: u64) -> Self {
->>>>>>> main:studies/scenes/src/errors.rs
         Truth { end_s, looks: (0..=looks).map(|k| exact_at(scene, end_s, k, looks)).collect() }
     }
 
     /// The exact motion at the looks, the start and the end among them.
-<<<<<<< HEAD:studies/src/errors.rs
-    pub(crate) fn looks(&self) -> &[Observation] {
-=======
     pub fn looks(&self) -> &[Observation] {
->>>>>>> main:studies/scenes/src/errors.rs
         &self.looks
     }
 
     /// Steps between two looks at a run of so many steps.
-<<<<<<< HEAD:studies/src/errors.rs
-    pub(crate) fn stride(&self, steps: u64) -> u64 {
-=======
     pub fn stride(&self, steps: u64) -> u64 {
->>>>>>> main:studies/scenes/src/errors.rs
         (steps / self.parts()).max(1)
     }
 
@@ -75,11 +63,7 @@ impl Truth {
     }
 
     /// The exact motion at a step. Where the number of steps is a multiple of the looks, the looks are steps.
-<<<<<<< HEAD:studies/src/errors.rs
-    pub(crate) fn at_step(&self, scene: &dyn AnyScene, step: u64, steps: u64) -> Cow<'_, Observation> {
-=======
     pub fn at_step(&self, scene: &dyn AnyScene, step: u64, steps: u64) -> Cow<'_, Observation> {
->>>>>>> main:studies/scenes/src/errors.rs
         let scaled = u128::from(step) * u128::from(self.parts());
         if scaled.is_multiple_of(u128::from(steps)) {
             Cow::Borrowed(&self.looks[(scaled / u128::from(steps)) as usize])

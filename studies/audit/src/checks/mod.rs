@@ -2,6 +2,8 @@
 
 pub mod clamps;
 pub mod conservation;
+pub mod dynamics;
+pub mod error;
 pub mod kinematics;
 pub mod time;
 

@@ -47,7 +47,7 @@ pub(super) fn candidates(square: f64, single: bool) -> Vec<Candidate> {
                         Precision::Single => run::<f32>(scheme, square, start, h, k, rows),
                     }
                 };
-                all.push(Candidate { id, memory, steps: None, substeps, run: Box::new(run) });
+                all.push(Candidate { id, memory, steps: None, damping: None, substeps, run: Box::new(run) });
             }
         }
     }

@@ -56,6 +56,8 @@ pub(super) struct Candidate {
     pub(super) memory: bool,
     /// The steps in a row for which its damping was fitted to the file; None where none was.
     pub(super) steps: Option<u64>,
+    /// The coefficient of its damping.
+    pub(super) damping: Option<f64>,
     /// Substeps in a step.
     pub(super) substeps: u32,
     /// How it runs.

@@ -5,6 +5,7 @@ mod angle;
 mod candidate;
 mod damping;
 mod own;
+pub(crate) mod reference;
 mod rotation;
 mod translation;
 
@@ -50,6 +51,8 @@ pub struct Tried {
     pub rows: usize,
     /// Whether it was run from the first row on instead of from every row.
     pub free_run: bool,
+    /// The coefficient of its damping, 1/s.
+    pub damping: Option<f64>,
     /// Other names of the same step: candidates that agree with it from any state.
     pub same_as: Vec<String>,
     #[serde(skip)]
@@ -332,6 +335,7 @@ fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, recor
             largest_difference: quantile(&scores, SHARE) / if candidate.memory { growth(&scores, k) } else { 1.0 },
             rows: scores.iter().filter(|s| **s <= limit).count(),
             free_run: candidate.memory,
+            damping: candidate.damping,
             same_as: Vec::new(),
             fitted: candidate.steps.is_some(),
             signature: signature(candidate, file, k, fewest),

@@ -160,7 +160,7 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
     let id = suffixed(name(&plan), plan.damping, precision);
-    Candidate { id, memory: false, steps: plan.damping.and_then(|d| d.steps), substeps: plan.substeps, run: Box::new(run) }
+    Candidate { id, memory: false, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: plan.substeps, run: Box::new(run) }
 }
 
 fn drag(damping: Option<Damping>) -> Drag {
@@ -289,8 +289,24 @@ impl<T: Single> Visit<T> {
 
 /// A quaternion and an angular velocity as eight plain numbers: q' = q omega / 2 or omega q / 2.
 #[derive(Clone, Copy)]
-struct Bare {
+pub(super) struct Bare {
     plan: RawPlan,
+}
+
+impl Bare {
+    /// A body with the angular velocity in its own axes.
+    pub(super) fn free(inertia: Vector3<f64>, moment: Moment) -> Self {
+        let plan = RawPlan {
+            scheme: RawScheme::MuntheKaas,
+            body: Body { inertia, moment, drag: Drag::None },
+            world: false,
+            normalise: true,
+            gyroscopic: true,
+            damping: None,
+            frame: OmegaFrame::Body,
+        };
+        Bare { plan }
+    }
 }
 
 impl<T: Single> Model<T> for Bare {
@@ -374,7 +390,7 @@ fn raw_candidate(plan: RawPlan, precision: Precision) -> Candidate {
         Precision::Single => run_raw::<f32>(plan, start, h, k, rows),
     };
     let memory = matches!(plan.scheme, RawScheme::Memory(_));
-    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), substeps: 1, run: Box::new(run) }
+    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: 1, run: Box::new(run) }
 }
 
 struct Once<'a, T: Single> {
@@ -406,7 +422,7 @@ fn dexp_inverse<T: Single>(u: Vector3<T>, omega: Vector3<T>) -> Vector3<T> {
 }
 
 /// One step of Runge-Kutta-Munthe-Kaas on the attitude, with the classical tableau for both.
-fn munthe_kaas<T: Single>(model: &Bare, h: T, s: State<Vector4<T>>) -> State<Vector4<T>> {
+pub(super) fn munthe_kaas<T: Single>(model: &Bare, h: T, s: State<Vector4<T>>) -> State<Vector4<T>> {
     let q0 = Rotation { w: s.q.x, v: Vector3::new(s.q.y, s.q.z, s.q.w) };
     let omega = |v: Vector4<T>| Vector3::new(v.y, v.z, v.w);
     let at = |u: Vector3<T>, v: Vector4<T>| {

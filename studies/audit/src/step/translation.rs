@@ -100,7 +100,7 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Double => run::<f64>(plan, start, h, k, rows),
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
-    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), substeps: plan.substeps, run: Box::new(run) }
+    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: plan.substeps, run: Box::new(run) }
 }
 
 fn run<T: Single>(plan: Plan, start: &Kin, h: f64, k: u64, rows: u64) -> Vec<Kin> {

@@ -106,13 +106,8 @@ impl Study for Ensemble {
 /// Refuses a size or a choice that leaves nothing to be run.
 ///
 /// # Errors
-<<<<<<< HEAD:studies/src/ensemble/mod.rs
-/// A size or a choice that leaves nothing to be run, named with what would be right.
-pub fn ensemble(selection: &mut Selection, count: usize, seed: u64, format: Format) -> Result<Product, Error> {
-=======
 /// What leaves nothing to be run, named with what would be right.
 pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error> {
->>>>>>> main:studies/measure/src/ensemble/mod.rs
     const PLACE: &str = "--ensemble";
     if !(1..=MOST_MEMBERS).contains(&count) {
         return Err(Error::plan(PLACE, format!("{count} members; give 1 to {MOST_MEMBERS}")));
@@ -133,46 +128,7 @@ pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error
     if let (Some(first), false) = (selection.scenes.first(), selection.scenes.iter().any(|s| known.contains(&s.id()))) {
         draw(first.as_ref(), 1, seed)?;
     }
-<<<<<<< HEAD:studies/src/ensemble/mod.rs
-    selection.progress.name(Ensemble::ID);
-    let mut product = from_rows::<Ensemble>(&measure(selection, count, seed), format)?;
-    let cost = cost::table(selection, count, seed)?;
-    let name = format!("{}.csv", cost.name);
-    product.files.push((name.clone(), cost.csv.into_bytes()));
-    product.section.blocks.push(Block::Table { caption: cost.caption.to_owned(), table: cost.table, csv: Some(name) });
-    Ok(product)
-}
-
-/// [`ensemble`] as a program does it: writes the files, and prints the tables before the claims.
-///
-/// # Errors
-/// Bad input, or an output that cannot be written.
-pub fn run(common: &Common, count: usize, seed: u64) -> Result<Ending, Error> {
-    if common.from.is_some() {
-        let message = "draws states and runs them; the rows of a directory have none to be drawn: leave --from out";
-        return Err(Error::plan("--ensemble", message));
-    }
-    let mut selection = common.selection()?;
-    let out = OutputDir::create(common.out(Ensemble::ID))?;
-    let Product { files, section, claims } = ensemble(&mut selection, count, seed, common.format)?;
-    let judged = Judged { claims, manifest: Manifest::of(&common.plan) };
-    produce::write(&out, common, files, &judged.manifest)?;
-    Ending::of(common, &judged, |claims| {
-        let tables: String = section.blocks.iter().flat_map(tables).collect();
-        format!("{tables}{}", summary::verdicts(claims))
-    })
-}
-
-/// The tables of a block, also of those within a group, as text.
-fn tables(block: &Block) -> Vec<String> {
-    match block {
-        Block::Table { caption, table, .. } => vec![format!("{caption}\n\n{}\n", table.to_text())],
-        Block::Group { blocks, .. } => blocks.iter().flat_map(tables).collect(),
-        _ => Vec::new(),
-    }
-=======
     Ok(())
->>>>>>> main:studies/measure/src/ensemble/mod.rs
 }
 
 /// A scene with its members and their exact motions.

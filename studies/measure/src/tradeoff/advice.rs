@@ -78,14 +78,10 @@ impl Question {
             }
         }
         if !has_scene {
-<<<<<<< HEAD:studies/src/tradeoff/advice.rs
-            return Err(Error::plan("--scene", "advice is about a scene; name one, such as --scene pendulum".to_owned()));
-=======
             return Err(Error::plan(
                 "--scene",
                 "advice is about a scene; name one, such as --scene pendulum".to_owned(),
             ));
->>>>>>> main:studies/measure/src/tradeoff/advice.rs
         }
         if self.error.is_none() && self.budget_us.is_none() {
             let message = "say what can be stood: an error (--error 1e-3) or a budget (--budget-us 5)".to_owned();

@@ -4,10 +4,6 @@ use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
 use reports::Marker;
 
-<<<<<<< HEAD:studies/src/tradeoff/candidate.rs
-use super::timed::{Lap, Laps};
-=======
->>>>>>> main:studies/measure/src/tradeoff/candidate.rs
 use crate::rotation::orders::is_rigid;
 use crate::rotation::scheme::{Rule, Scheme};
 use crate::study::color_of;

@@ -1,16 +1,9 @@
 //! The error of a run: the largest over a number of looks of what its configuration is away from the exact motion.
 
-<<<<<<< HEAD:studies/src/tradeoff/truth.rs
-use crate::errors;
-use crate::observation::{Observation, Quantity};
-use crate::run::{Outcome, Trajectory};
-use crate::scene::AnyScene;
-=======
 use scenes::any::AnyScene;
 use scenes::errors;
 use scenes::observation::{Observation, Quantity};
 use scenes::run::{Outcome, Trajectory};
->>>>>>> main:studies/measure/src/tradeoff/truth.rs
 
 /// Looks at a run of the study.
 pub const LOOKS: u64 = 32;

@@ -165,11 +165,5 @@ pub fn table(rows: &[Row]) -> Result<Derived, Error> {
 pub(super) const SHOWN: [MethodId; 3] = [MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4];
 
 fn is_shown(method: &str) -> bool {
-<<<<<<< HEAD:studies/src/tradeoff/ucurve.rs
-    SHOWN
-        .iter()
-        .any(|m| method.strip_prefix(m.id()).is_some_and(|rest| rest.is_empty() || rest == "/body-omega"))
-=======
     SHOWN.iter().any(|m| method.strip_prefix(m.id()).is_some_and(|rest| rest.is_empty() || rest == "/body-omega"))
->>>>>>> main:studies/measure/src/tradeoff/ucurve.rs
 }

@@ -70,12 +70,7 @@ struct Shown(usize, usize, usize, u64, usize, usize, u64, Option<f64>, Option<f6
 /// Rows that have no form as text.
 pub fn page(convergence_csv: &str, set: &[String], about: &[(String, String)]) -> Result<String, Error> {
     let rows: Vec<Row> = reports::read_csv(convergence_csv, "convergence.csv")?;
-<<<<<<< HEAD:studies/src/teach/mod.rs
-    let data = serde_json::to_string(&data(&rows, set))
-        .map_err(|error| Error::plan(FILE, error.to_string()))?;
-=======
     let data = serde_json::to_string(&data(&rows, set)).map_err(|error| Error::plan(FILE, error.to_string()))?;
->>>>>>> main:studies/programs/src/teach/mod.rs
     let parts = [
         ("{{STYLE}}", STYLE.to_owned()),
         ("{{FOOTER}}", footer(about)),
