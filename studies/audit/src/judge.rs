@@ -96,13 +96,19 @@ pub fn judge(path: &Path, args: &Args) -> Result<FileReport, Error> {
         (errors, found) = checks::error::check(&t, subject, late, args.max_error);
         findings.extend(found);
         let exact = checks::error::is_exact(&t, &errors);
-        steps = step::identify(&t, &clock, &subject.physics, args.record_every);
+        steps = step::identify(&t, &clock, &subject.physics, subject.ball, args.record_every);
         for step in steps.iter_mut().filter(|_| exact) {
             step.verdict = StepVerdict::Exact;
         }
         let damped = |moves| damped(&steps, moves);
         findings.extend(dynamics::check(&t, &clock, subject, [damped(Moves::Translation), damped(Moves::Rotation)]));
         findings.extend(steps.iter().map(of_step));
+        let known = findings.iter().any(|f| f.id == "pose-late-by-one-step");
+        if steps.iter().any(|s| s.pose_late) && !known {
+            let evidence = "from the first row on the pose is that of the step before its rate, to rounding";
+            let quantity = ("lag of the pose", 1.0, "steps");
+            findings.push(Finding::new(Check::Kinematics, "pose-late-by-one-step", Verdict::Fault, quantity, evidence));
+        }
     }
     findings.sort_by_key(|f| (f.verdict, f.check));
     let end = |i: usize| t.time[i];

@@ -38,6 +38,16 @@ pub struct Ball {
     pub restitution: f64,
 }
 
+impl Ball {
+    /// Whether the ball is above the floor from row i to the next, by more than it can fall in a row.
+    pub fn flies(&self, t: &Trajectory, g: Vector3<f64>, i: usize, h: f64) -> bool {
+        let (Some(x), Some(v)) = (&t.position, &t.velocity) else { return true };
+        let up = -g.normalize();
+        let above = |row: usize| x.values[row].dot(&up) - self.radius - 0.25 * h * v.values[row].norm();
+        above(i) > 0.02 && above(i + 1) > 0.02
+    }
+}
+
 /// Scenes that a file can be held against, each with the parameters that can be set.
 pub const SCENES: &[(&str, &[&str])] = &[
     ("torque-free-spin", &["inertia", "gravity"]),

@@ -222,7 +222,14 @@ fn lag(
     let of_method = record_every.map_or(0.27, |k| 0.55 / k as f64);
     let quantity = (format!("lag of the {} behind its rate", words.pose), late, "s");
     let evidence = format!("the {} fits the {} best {late:.6} s ({rows:.3} rows{per_row}) late", words.pose, words.rate);
-    if whole != 0 || (rows.abs() > of_method && explained > 0.8) {
+    // The mean of two rates misses a curved rate, and a linear step of an attitude turns by (h omega)^2 / 12 too little.
+    let bends = moved.windows(2).map(|w| (w[1].rates[1] - w[1].rates[0] - w[0].rates[1] + w[0].rates[0]).norm_squared()).sum::<f64>();
+    let bend = (bends / below).sqrt() / interval;
+    let speed = (moved.iter().map(|m| m.mean.norm_squared()).sum::<f64>() / moved.len() as f64).sqrt();
+    let turn = speed * interval / record_every.unwrap_or(1) as f64;
+    let linear = if words.ids[2] == "attitude-lags" { turn * turn / 12.0 * speed / (change / interval) } else { 0.0 };
+    let room = of_method + interval * bend / 12.0 + linear / interval;
+    if whole != 0 || (rows.abs() > room && explained > 0.8) {
         return Some(Finding::new(Check::Kinematics, words.ids[2], Verdict::Fault, quantity, evidence));
     }
     (explained > 0.9).then(|| {

@@ -20,6 +20,7 @@ use damping::{Damping, Rule, When};
 use crate::checks::time::Clock;
 use crate::finding::quantile;
 use crate::physics::{Force, Moment, Physics, acceleration};
+use crate::subject::Ball;
 use crate::trajectory::{Rounding, Trajectory};
 
 /// What is known of the step of a file.
@@ -78,6 +79,8 @@ pub struct Identified {
     pub resolution: f64,
     /// Rows that were compared.
     pub rows: usize,
+    /// Whether the pose is written one step after its rate.
+    pub pose_late: bool,
 }
 
 /// The share of rows that a step must reproduce: the others may be of another cause, a contact or a clamp.
@@ -110,6 +113,7 @@ struct File<'a> {
     t: &'a Trajectory,
     clock: &'a Clock,
     moves: Moves,
+    ball: Option<Ball>,
 }
 
 impl File<'_> {
@@ -157,16 +161,23 @@ impl File<'_> {
         let (Some(Force::Constant(g)), Some(v)) = (force, &self.t.velocity) else { return regular.collect() };
         let h = self.clock.interval;
         let falls = |i: &usize| ((v.values[i + 1] - v.values[*i]) / h - g).norm() < 0.5 * g.norm();
-        regular.filter(falls).collect()
+        let flies = |i: &usize| self.ball.is_none_or(|ball| ball.flies(self.t, g, *i, h));
+        regular.filter(falls).filter(flies).collect()
     }
 }
 
 /// The steps of all parts of the motion of which the law is known.
-pub fn identify(t: &Trajectory, clock: &Clock, physics: &Physics, record_every: Option<u64>) -> Vec<Identified> {
+pub fn identify(
+    t: &Trajectory,
+    clock: &Clock,
+    physics: &Physics,
+    ball: Option<Ball>,
+    record_every: Option<u64>,
+) -> Vec<Identified> {
     let mut out = Vec::new();
     let single = t.rounding != Rounding::Double;
     if let (Some(force), Some(_), Some(v)) = (physics.force, &t.position, &t.velocity) {
-        let file = File { t, clock, moves: Moves::Translation };
+        let file = File { t, clock, moves: Moves::Translation, ball };
         if force == Force::None && !slows(&v.values) {
             return rotation_and_angle(t, clock, physics, record_every);
         }
@@ -192,7 +203,7 @@ fn rotation_and_angle(t: &Trajectory, clock: &Clock, physics: &Physics, record_e
     let mut out = Vec::new();
     let single = t.rounding != Rounding::Double;
     if let (Some(inertia), Some(moment), Some(_), Some(w)) = (physics.inertia, physics.moment, &t.attitude, &t.omega) {
-        let file = File { t, clock, moves: Moves::Rotation };
+        let file = File { t, clock, moves: Moves::Rotation, ball: None };
         let damping = if moment == Moment::None {
             dampings(t, clock, &w.values, physics.angular_damping, record_every, &|_| Vector3::zeros())
         } else {
@@ -201,7 +212,7 @@ fn rotation_and_angle(t: &Trajectory, clock: &Clock, physics: &Physics, record_e
         out.extend(search(&file, &rotation::candidates(inertia, moment, &damping, t.omega_frame, single), None, record_every));
     }
     if let (Some(square), Some(_), Some(_)) = (physics.pendulum, &t.angle, &t.angle_rate) {
-        let file = File { t, clock, moves: Moves::Angle };
+        let file = File { t, clock, moves: Moves::Angle, ball: None };
         out.extend(search(&file, &angle::candidates(square, single), None, record_every));
     }
     out
@@ -343,8 +354,54 @@ fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, recor
         });
     }
     tried.sort_by(|a, b| a.largest_difference.total_cmp(&b.largest_difference));
-    Some(verdict(file, tried, pool.len(), compared.len()))
+    let late = late_pose(file, candidates, &tried, rows[0]);
+    let mut out = verdict(file, tried, pool.len(), compared.len());
+    if let Some((c, k)) = late {
+        out.pose_late = true;
+        out.verdict = StepVerdict::Identified;
+        out.candidates.truncate(1);
+        out.candidates[0].id = format!("{}, the pose written one step late", candidates[c].id);
+        out.candidates[0].same_as.clear();
+        out.candidates[0].steps_per_row = k;
+        out.candidates[0].h_s = file.clock.interval / k as f64;
+        out.candidates[0].damping = candidates[c].damping;
+    }
+    Some(out)
 }
+
+/// A candidate whose pose, written one step late, reproduces the first rows, where the best candidate fails from the first row:
+/// there the pose and its rate still belong together.
+fn late_pose(file: &File<'_>, candidates: &[Candidate], tried: &[Tried], first: usize) -> Option<(usize, u64)> {
+    let best = tried.first()?;
+    let k = best.steps_per_row;
+    let limit = allowed(k, file.t.rounding);
+    if best.largest_difference > limit || first != 0 || file.t.rows() <= LATE_ROWS {
+        return None;
+    }
+    let of_best = candidates.get(best.rank.2)?;
+    if from_rows(file, of_best, k, &[0])[0] <= limit {
+        return None;
+    }
+    let h = file.clock.interval / k as f64;
+    let fits = |candidate: &Candidate| {
+        let run = (candidate.run)(&file.kin(0), h, 1, k * LATE_ROWS as u64);
+        (1..=LATE_ROWS).all(|row| {
+            let now = row * k as usize;
+            let (Some(rate), pose) = (run.get(now - 1), if now > 1 { run[now - 2] } else { file.kin(0) }) else {
+                return false;
+            };
+            let seen = Kin { v: rate.v, w: rate.w, angle: [pose.angle[0], rate.angle[1]], ..pose };
+            file.difference(&seen, row) <= limit * (row as f64).sqrt() * 4.0
+        })
+    };
+    let plain = |c: &&(usize, &Candidate)| !c.1.memory && c.1.substeps == 1;
+    let mut fitting: Vec<usize> = candidates.iter().enumerate().filter(|c| plain(&c) && fits(c.1)).map(|(i, _)| i).collect();
+    fitting.sort_by_key(|c| !candidates[*c].id.starts_with("semi-implicit"));
+    fitting.first().map(|c| (*c, k))
+}
+
+/// Rows from the start that a late pose must reproduce.
+const LATE_ROWS: usize = 8;
 
 /// By how much rounding grows in a free run: with the square root of the number of steps.
 fn growth(scores: &[f64], k: u64) -> f64 {
@@ -448,5 +505,5 @@ fn verdict(file: &File<'_>, mut tried: Vec<Tried>, pool: usize, rows: usize) -> 
         tried = merged(tried, file.t.rounding == Rounding::Single);
         if tried.len() == 1 { StepVerdict::Identified } else { StepVerdict::OneOf }
     };
-    Identified { moves: file.moves, verdict, candidates: tried, tried: pool, resolution: resolution.unwrap_or(0.0), rows }
+    Identified { moves: file.moves, verdict, candidates: tried, tried: pool, resolution: resolution.unwrap_or(0.0), rows, pose_late: false }
 }

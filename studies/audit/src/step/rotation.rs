@@ -121,7 +121,10 @@ fn is_sensible(scheme: Scheme, turn: Turn, damping: Option<Damping>) -> bool {
 fn is_substepped(scheme: Scheme) -> bool {
     matches!(
         scheme,
-        Scheme::General(MethodId::SemiImplicitEuler, Storage::BodyOmega | Storage::WorldOmega)
+        Scheme::General(
+            MethodId::SemiImplicitEuler,
+            Storage::BodyOmega | Storage::WorldOmega | Storage::WithoutGyroscopicTerm
+        )
             | Scheme::Rigid(RigidStep::ImplicitGyroscopic | RigidStep::RestoredMomentum)
     )
 }
