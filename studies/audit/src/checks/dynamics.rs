@@ -12,7 +12,10 @@ use crate::trajectory::Trajectory;
 struct Fit {
     coefficients: [f64; 2],
     errors: [f64; 2],
+    /// Share of y that both terms explain.
     explained: f64,
+    /// Share of what the first term leaves that the second explains.
+    second: f64,
 }
 
 fn fit(rows: &[(Vector3<f64>, Vector3<f64>, Vector3<f64>)]) -> Option<Fit> {
@@ -32,8 +35,12 @@ fn fit(rows: &[(Vector3<f64>, Vector3<f64>, Vector3<f64>)]) -> Option<Fit> {
     let c = inverse * right;
     let left: f64 = rows.iter().map(|(y, p, q)| (y - p * c.x - q * c.y).norm_squared()).sum();
     let variance = left / (3 * rows.len() - 2) as f64;
+    let pp: f64 = rows.iter().map(|(_, p, _)| p.norm_squared()).sum();
+    let alone = if pp > 0.0 { rows.iter().map(|(y, p, _)| p.dot(y)).sum::<f64>() / pp } else { 0.0 };
+    let without: f64 = rows.iter().map(|(y, p, _)| (y - p * alone).norm_squared()).sum();
+    let second = 1.0 - left / without.max(f64::MIN_POSITIVE);
     let errors = [0, 1].map(|i| (variance * inverse[(i, i)]).max(0.0).sqrt());
-    Some(Fit { coefficients: [c.x, c.y], errors, explained: 1.0 - left / size })
+    Some(Fit { coefficients: [c.x, c.y], errors, explained: 1.0 - left / size, second })
 }
 
 /// Standard errors that a coefficient must be away from what it should be.
@@ -174,7 +181,8 @@ fn rotation(
     let significant = c > SURELY * fit.errors[1] + 8.0 * resolution / (h * turned.max(f64::MIN_POSITIVE)) && c > 1e-4;
     // A step without a damping may still lose momentum; that is its own law and not a damping.
     if rigid && significant && damped != Some(false) {
-        let alone = factor.abs() < 0.2 || !matters || damped == Some(true);
+        // A method that loses momentum loses it in another pattern than -c omega.
+        let alone = factor.abs() < 0.2 || !matters || damped == Some(true) || fit.second > 0.9;
         let evidence = format!("omega decays as by -c omega with c = {c:.5} 1/s (+- {:.1e})", 2.0 * fit.errors[1]);
         let verdict = if alone { Verdict::Fault } else { Verdict::Note };
         found.push(finding("angular-damping", verdict, ("damping of the angular velocity", c, "1/s"), evidence));

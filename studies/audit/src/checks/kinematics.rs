@@ -397,6 +397,10 @@ pub fn contradictions(t: &Trajectory) -> Vec<Finding> {
         let evidence = format!("the names say {} axes; q' = q omega / 2 holds in {} axes (to {:.1e})", frame(named), frame(t.omega_frame), scored.misfit);
         found.push(Finding::new(Check::Reading, "frame-not-as-named", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));
     }
+    if t.order_not_as_named {
+        let evidence = format!("the names say the scalar first; q' = q omega / 2 holds with the scalar last (to {:.1e})", scored.misfit);
+        found.push(Finding::new(Check::Reading, "quaternion-order-not-as-named", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));
+    }
     if attitude.reading.inverse && scored.misfit < 0.3 {
         let evidence = format!("q' = q omega / 2 holds only for the inverse of the attitude (to {:.1e}): it turns world into body", scored.misfit);
         found.push(Finding::new(Check::Reading, "attitude-is-inverse", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));

@@ -118,8 +118,8 @@ pub(crate) fn readings(group: &Group, largest: f64) -> Vec<Reading> {
     let named_axes = || TAIT_BRYAN.iter().map(|order| Notation::Euler(order.map(|axis| (axis, axis))));
     let in_order = |axes: &[usize; 3]| Notation::Euler([(0, axes[0]), (1, axes[1]), (2, axes[2])]);
     let notations: Vec<Notation> = match group.role {
-        Role::Quaternion if group.order_is_open => vec![Notation::Wxyz, Notation::Xyzw],
-        Role::Quaternion => vec![Notation::Wxyz],
+        // A program may write the scalar last under names that say first: the second is taken only where the first fails.
+        Role::Quaternion => vec![Notation::Wxyz, Notation::Xyzw],
         Role::Matrix => vec![Notation::Matrix],
         Role::RotationVector => vec![Notation::RotationVector],
         Role::Mrp => vec![Notation::Mrp],

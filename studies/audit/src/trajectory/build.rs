@@ -22,6 +22,7 @@ pub(super) fn trajectory(table: &Table, layout: &Layout, choices: &Choices) -> R
         unused: Vec::new(),
         ties: Vec::new(),
         scored: None,
+        order_not_as_named: false,
         named_frame: None,
     };
     take_time(&mut out, table, layout)?;
@@ -330,6 +331,10 @@ fn decide(
         None => None,
     };
     let mut tied: Vec<Scored> = scored.iter().filter(|s| s.misfit < CLEARLY * best).copied().collect();
+    let renamed = |s: &Scored| !attitude.order_is_open && s.reading.notation == Notation::Xyzw;
+    if tied.iter().any(|s| !renamed(s)) {
+        tied.retain(|s| !renamed(s));
+    }
     tied.sort_by_key(|s| (s.reading.inverse, named.is_some_and(|n| n != s.frame), s.frame == OmegaFrame::Body));
     if scored.iter().all(|s| s.turning < 1e-12) {
         "the body does not turn".clone_into(why);
@@ -340,6 +345,7 @@ fn decide(
     let unexplained = best > 0.3;
     let chosen = if unexplained { by_factor(&scored) } else { tied[0] };
     out.scored = Some(chosen);
+    out.order_not_as_named = renamed(&chosen) && !unexplained;
     out.omega_frame = chosen.frame;
     let other = scored.iter().find(|s| s.misfit >= CLEARLY * best).map(|s| s.misfit);
     *why = match other {
@@ -373,7 +379,8 @@ fn usual(scored: &[Scored]) -> Scored {
 fn by_factor(scored: &[Scored]) -> Scored {
     let best = scored.iter().map(|s| s.free_misfit).fold(f64::INFINITY, f64::min);
     let close = |s: &&Scored| s.free_misfit < (CLEARLY * best).min(0.3);
-    scored.iter().filter(close).min_by_key(|s| (s.omega_scale != 1.0, s.reading.inverse)).copied().unwrap_or(scored[0])
+    let plain = |s: &&Scored| (s.omega_scale != 1.0, s.reading.notation == Notation::Xyzw, s.reading.inverse);
+    scored.iter().filter(close).min_by_key(plain).copied().unwrap_or(scored[0])
 }
 
 /// The part of the turning in a step that the digits of the file leave open.
@@ -389,7 +396,8 @@ fn floor(rounding: Rounding) -> f64 {
 fn undecided(out: &mut Trajectory, table: &Table, attitude: &Group, layout: &Layout, why: &mut String) -> Reading {
     let largest =
         attitude.columns.iter().flat_map(|i| &table.columns[*i].values).fold(0.0_f64, |m, x| m.max(x.abs()));
-    let all = attitude::readings(attitude, largest);
+    let mut all = attitude::readings(attitude, largest);
+    all.retain(|r| attitude.order_is_open || r.notation != Notation::Xyzw);
     let tum = table.dialect.names.is_empty() && table.dialect.cells == 8 && layout.get(Role::Position).is_some();
     if tum && attitude.role == Role::Quaternion {
         "eight columns without names are t x y z qx qy qz qw (TUM)".clone_into(why);

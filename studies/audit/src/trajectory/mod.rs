@@ -159,6 +159,8 @@ pub struct Trajectory {
     pub ties: Vec<Tie>,
     /// How the readings of the attitude compare; the chosen one first.
     pub(crate) scored: Option<Scored>,
+    /// Whether the names of the quaternion's components say another order than the numbers.
+    pub order_not_as_named: bool,
     /// The frame that the names say.
     pub named_frame: Option<NamedFrame>,
 }

@@ -210,7 +210,11 @@ fn place_rest(layout: &mut Layout, columns: &[Column], time: usize, rest: &[usiz
     let mut triples: Vec<Vec<usize>> = others.chunks(size).map(<[usize]>::to_vec).collect();
     let has_attitude = layout.get(Role::Quaternion).is_some();
     let pair = best_pair(columns, time, &triples);
-    if let Some((p, v)) = pair {
+    let behind = |triple: &[usize]| layout.get(Role::Quaternion).is_some_and(|q| q.columns[0] < triple[0]);
+    if size == 3 && triples.len() == 1 && behind(&triples[0]) {
+        let reason = "no header; three columns behind an attitude, and no position";
+        layout.groups.push(plain(Role::Omega, triples.remove(0), reason));
+    } else if let Some((p, v)) = pair {
         let reason = "no header; its differences are the velocity times the step";
         layout.groups.push(plain(Role::Position, triples[p].clone(), reason));
         layout.groups.push(plain(Role::Velocity, triples[v].clone(), "no header; explains how the position moves"));
