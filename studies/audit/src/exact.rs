@@ -35,7 +35,9 @@ pub fn exact(subject: &Subject, t: &Trajectory, pose_late: f64) -> Exact {
             out.source.push(if matches!(force, Force::Kepler { .. }) { "Kepler's equation" } else { "closed form" });
         }
     }
-    if let (Some(inertia), Some(moment), Some(attitude), Some(omega)) = (p.inertia, p.moment, &t.attitude, t.omega_body(0)) {
+    if let (Some(inertia), Some(moment), Some(attitude), Some(omega)) =
+        (p.inertia, p.moment, &t.attitude, t.omega_body(0))
+    {
         let q0 = attitude.at(0);
         let c = p.angular_damping.unwrap_or(0.0);
         match moment {
@@ -51,13 +53,8 @@ pub fn exact(subject: &Subject, t: &Trajectory, pose_late: f64) -> Exact {
         }
     }
     if let (Some(square), Some(a), Some(r)) = (p.pendulum, &t.angle, &t.angle_rate) {
-        let pendulum = scenes::Pendulum {
-            mass: 1.0,
-            length: 1.0,
-            gravity: square,
-            angle: a.values[0],
-            omega: r.values[0],
-        };
+        let pendulum =
+            scenes::Pendulum { mass: 1.0, length: 1.0, gravity: square, angle: a.values[0], omega: r.values[0] };
         let at = |t: f64| {
             let s = scenes::motion::Motion::<f64>::exact(&pendulum, t);
             [s.q.x, s.v.x]
@@ -109,7 +106,12 @@ fn point(
 }
 
 /// An ellipse from one state: its plane and pericentre, then Kepler's equation in double-double.
-fn orbit(mu: f64, centre: Vector3<f64>, x0: Vector3<f64>, v0: Vector3<f64>) -> Option<Box<dyn Fn(f64) -> [Vector3<f64>; 2]>> {
+fn orbit(
+    mu: f64,
+    centre: Vector3<f64>,
+    x0: Vector3<f64>,
+    v0: Vector3<f64>,
+) -> Option<Box<dyn Fn(f64) -> [Vector3<f64>; 2]>> {
     let r = x0 - centre;
     let spin = r.cross(&v0);
     let semi_major = 1.0 / (2.0 / r.norm() - v0.norm_squared() / mu);
@@ -124,7 +126,8 @@ fn orbit(mu: f64, centre: Vector3<f64>, x0: Vector3<f64>, v0: Vector3<f64>) -> O
     let sine = r.dot(&across) / (semi_major * (1.0 - eccentricity * eccentricity).sqrt());
     let cosine = r.dot(&along) / semi_major + eccentricity;
     let angle = sine.atan2(cosine);
-    let kepler = scenes::Kepler { mass: 1.0, mu, semi_major, eccentricity, anomaly: angle - eccentricity * angle.sin() };
+    let kepler =
+        scenes::Kepler { mass: 1.0, mu, semi_major, eccentricity, anomaly: angle - eccentricity * angle.sin() };
     Some(Box::new(move |t| {
         let s = scenes::motion::Motion::<f64>::exact(&kepler, t);
         let space = |p: nalgebra::Vector2<f64>| along * p.x + across * p.y;
@@ -152,7 +155,11 @@ fn bounced(ball: Ball, g: Vector3<f64>, x0: Vector3<f64>, v0: Vector3<f64>, t: f
         }
     }
     let resting = height == 0.0 && speed == 0.0;
-    let (h, v) = if resting { (0.0, 0.0) } else { (height + speed * left - strength * left * left / 2.0, speed - strength * left) };
+    let (h, v) = if resting {
+        (0.0, 0.0)
+    } else {
+        (height + speed * left - strength * left * left / 2.0, speed - strength * left)
+    };
     let flat = |p: Vector3<f64>| p - up * p.dot(&up);
     [flat(x0) + flat(v0) * t + up * (h + ball.radius), flat(v0) + up * v]
 }

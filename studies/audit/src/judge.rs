@@ -175,7 +175,9 @@ fn of_step(step: &Identified) -> Finding {
 
 /// The angle of a body on a hinge from its attitude, where a pendulum is asked for and the file has no angle.
 fn hinge(t: &mut Trajectory, subject: &Subject) {
-    let (Some(_), None, Some(attitude), Some(_)) = (subject.physics.pendulum, &t.angle, &t.attitude, &t.omega) else { return };
+    let (Some(_), None, Some(attitude), Some(_)) = (subject.physics.pendulum, &t.angle, &t.attitude, &t.omega) else {
+        return;
+    };
     let world = |row: usize| t.omega_world(row).unwrap_or(Vector3::zeros());
     let fastest = (0..t.rows()).max_by(|a, b| world(*a).norm().total_cmp(&world(*b).norm())).unwrap_or(0);
     let Some(axis) = world(fastest).try_normalize(0.0) else { return };

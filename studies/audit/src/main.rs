@@ -11,14 +11,17 @@ use clap::{Parser, ValueEnum};
 
 /// Judges trajectories that another program computed, from their files
 #[derive(Parser)]
-#[command(version, after_help = "\
+#[command(
+    version,
+    after_help = "\
 Examples:
   audit run.csv                                              clock and kinematics
   audit run.csv --inertia 1.25,0.75,1.75                     and conservation
   audit run.csv --scene torque-free-spin --inertia 1.25,0.75,1.75
   audit h60.csv h120.csv --scene spring-3d --set stiffness=12.5 --set mass=3
 
-Exit codes: 0 no fault, 1 a fault or a broken bound, 2 wrong input.")]
+Exit codes: 0 no fault, 1 a fault or a broken bound, 2 wrong input."
+)]
 struct Flags {
     /// Files: text tables with one row for each time; several are one motion with different steps
     #[arg(required = true, value_name = "FILE")]

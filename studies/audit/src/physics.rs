@@ -165,8 +165,8 @@ impl<T: Single> RigidBody<T> for Body {
                 Some(integrator::rotation::cross(lit(arm), at.attitude.rotate_back(lit(gravity))))
             }
         };
-        let drag = (self.drag != Drag::None)
-            .then(|| self.drag.at(at.omega_body).component_mul(&lit::<T>(self.inertia)));
+        let drag =
+            (self.drag != Drag::None).then(|| self.drag.at(at.omega_body).component_mul(&lit::<T>(self.inertia)));
         match (weight, drag) {
             (None, None) => Torque::None,
             (Some(a), Some(b)) => Torque::Body(a + b),

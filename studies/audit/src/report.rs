@@ -65,7 +65,11 @@ impl Report {
             for f in &file.findings {
                 let evidence = f.evidence.replace('|', "\\|");
                 let (verdict, check) = (f.verdict.id(), f.check.id());
-                let _ = writeln!(out, "| {verdict} | {check} | {} | {:.6e} | {} | {evidence} |", f.quantity, f.value, f.unit);
+                let _ = writeln!(
+                    out,
+                    "| {verdict} | {check} | {} | {:.6e} | {} | {evidence} |",
+                    f.quantity, f.value, f.unit
+                );
             }
             out.push('\n');
         }
@@ -171,8 +175,11 @@ fn json(file: &FileReport) -> serde_json::Value {
         StepVerdict::NoneOf => 3,
     };
     let worst = file.step.iter().map(|s| s.verdict).max_by_key(|v| rank(*v));
-    let parts: Vec<serde_json::Value> =
-        file.step.iter().map(|s| serde_json::json!({ "moves": s.moves, "verdict": s.verdict, "rows": s.rows })).collect();
+    let parts: Vec<serde_json::Value> = file
+        .step
+        .iter()
+        .map(|s| serde_json::json!({ "moves": s.moves, "verdict": s.verdict, "rows": s.rows }))
+        .collect();
     serde_json::json!({
         "path": file.path, "verdict": verdict(file), "columns": file.columns, "unused": file.unused,
         "rounding": file.rounding, "time": file.time, "findings": file.findings, "error": file.error,

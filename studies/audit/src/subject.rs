@@ -71,9 +71,10 @@ struct Values<'a>(&'a [(String, String)]);
 impl Values<'_> {
     fn vector(&self, name: &str) -> Result<Option<Vector3<f64>>, Error> {
         let Some((_, text)) = self.0.iter().find(|(n, _)| n == name) else { return Ok(None) };
-        numbers(text).and_then(|n| <[f64; 3]>::try_from(n).ok()).map(|n| Some(n.into())).ok_or_else(|| {
-            Error::flag("--set", format!("{name}={text}: three numbers are expected, as {name}=1,2,3"))
-        })
+        numbers(text)
+            .and_then(|n| <[f64; 3]>::try_from(n).ok())
+            .map(|n| Some(n.into()))
+            .ok_or_else(|| Error::flag("--set", format!("{name}={text}: three numbers are expected, as {name}=1,2,3")))
     }
 
     fn number(&self, name: &str) -> Result<Option<f64>, Error> {
@@ -117,7 +118,10 @@ pub fn subject(settings: &Settings, t: &Trajectory) -> Result<Option<Subject>, E
     let base = name.split('/').next().unwrap_or(name);
     let Some((_, known)) = SCENES.iter().find(|(id, _)| *id == base) else {
         let all: Vec<&str> = SCENES.iter().map(|(id, _)| *id).collect();
-        return Err(Error::flag("--scene", format!("'{name}' is no scene a file can be held against; known: {}", all.join(", "))));
+        return Err(Error::flag(
+            "--scene",
+            format!("'{name}' is no scene a file can be held against; known: {}", all.join(", ")),
+        ));
     };
     if let Some((unknown, _)) = settings.set.iter().find(|(n, _)| !known.contains(&n.as_str())) {
         return Err(Error::flag("--set", format!("{base} has no parameter '{unknown}'; it has {}", known.join(", "))));
@@ -131,7 +135,10 @@ pub fn subject(settings: &Settings, t: &Trajectory) -> Result<Option<Subject>, E
             physics.inertia = set.or(physics.inertia);
             let positive = physics.inertia.is_some_and(|i| i.iter().all(|x| *x > 0.0));
             if !positive {
-                return Err(Error::flag("--inertia", format!("{base} needs the principal moments, as --inertia 1.25,0.75,1.75")));
+                return Err(Error::flag(
+                    "--inertia",
+                    format!("{base} needs the principal moments, as --inertia 1.25,0.75,1.75"),
+                ));
             }
             physics.moment = Some(Moment::None);
             physics.force = Some(gravity?.filter(|g| g.norm() > 0.0).map_or(Force::None, Force::Constant));
@@ -164,7 +171,10 @@ pub fn subject(settings: &Settings, t: &Trajectory) -> Result<Option<Subject>, E
             let set = values.vector("inertia")?.or(symmetric.map(|(a, c)| Vector3::new(a, a, c)));
             physics.inertia = set.or(physics.inertia);
             if physics.inertia.is_none() {
-                return Err(Error::flag("--inertia", format!("{base} needs the principal moments about the fixed point")));
+                return Err(Error::flag(
+                    "--inertia",
+                    format!("{base} needs the principal moments about the fixed point"),
+                ));
             }
             let arm = Vector3::new(0.0, 0.0, values.needed("mgl", base)?);
             physics.moment = Some(Moment::Weight { arm, gravity: Vector3::new(0.0, 0.0, -1.0) });
@@ -203,7 +213,10 @@ pub fn inertia(text: &str) -> Result<Vector3<f64>, Error> {
     };
     let slack = 1.0 + 8.0 * f64::EPSILON;
     if a > (b + c) * slack || b > (c + a) * slack || c > (a + b) * slack {
-        return Err(Error::flag("--inertia", format!("'{text}': no body has one moment larger than the sum of the others")));
+        return Err(Error::flag(
+            "--inertia",
+            format!("'{text}': no body has one moment larger than the sum of the others"),
+        ));
     }
     Ok(Vector3::new(a, b, c))
 }

@@ -192,7 +192,8 @@ fn errors_are_those_of_an_independent_reference() {
         ("rapier_f64/C_240", 32, "position", 0.067536139826),
     ] {
         let report = report(file, record_every);
-        let found = report.error.iter().find(|e| e.quantity == quantity).unwrap_or_else(|| panic!("{file}: no {quantity}"));
+        let found =
+            report.error.iter().find(|e| e.quantity == quantity).unwrap_or_else(|| panic!("{file}: no {quantity}"));
         // The reference's own error is below 1e-9.
         assert!((found.max - reference).abs() < 2e-9, "{file}: {} instead of {reference}", found.max);
     }

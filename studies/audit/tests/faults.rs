@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use audit::step::StepVerdict;
 use audit::subject::Settings;
 use audit::{Args, FileReport, judge};
-use integrator::methods::{FreeSplitting, ImplicitGyroscopic, ImplicitMidpoint, MomentumMidpoint, RestoredMomentum, Rk4, SemiImplicitEuler};
+use integrator::methods::{
+    FreeSplitting, ImplicitGyroscopic, ImplicitMidpoint, MomentumMidpoint, RestoredMomentum, Rk4, SemiImplicitEuler,
+};
 use integrator::rigid_body::{BodyOmega, RigidModel, WorldMomentum, WorldOmega};
 use integrator::{Method, Rotation, drive};
 use nalgebra::Vector3;
@@ -51,7 +53,8 @@ fn show(x: f64, digits: usize) -> String {
 fn table(header: &str, rows: impl IntoIterator<Item = Vec<f64>>, digits: usize) -> String {
     let mut text = format!("{header}\n");
     for row in rows {
-        let cells: Vec<String> = row.iter().enumerate().map(|(i, x)| show(*x, if i == 0 { 17 } else { digits })).collect();
+        let cells: Vec<String> =
+            row.iter().enumerate().map(|(i, x)| show(*x, if i == 0 { 17 } else { digits })).collect();
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text
@@ -166,7 +169,8 @@ fn faults_of_the_clock_are_named_alone() {
     assert_eq!(ids(&judged(HEADER, repeated.iter().map(cells), 17)), ["repeated-row"]);
     let gap = rows.iter().enumerate().filter(|(i, _)| *i != 57).map(|(_, r)| cells(r));
     assert_eq!(ids(&judged(HEADER, gap, 17)), ["gap"]);
-    let reset = rows.iter().enumerate().map(|(i, r)| cells(&Row { t: if i < 300 { r.t } else { r.t - 300.0 * H }, ..*r }));
+    let reset =
+        rows.iter().enumerate().map(|(i, r)| cells(&Row { t: if i < 300 { r.t } else { r.t - 300.0 * H }, ..*r }));
     assert_eq!(value(&judged(HEADER, reset, 17), "clock-reset"), 1.0);
     // Stamps 3 % of a step off, in a fixed pattern without a drift.
     let jitter = rows.iter().enumerate().map(|(i, r)| cells(&Row { t: r.t + 0.03 * H * (i as f64 * 2.4).sin(), ..*r }));
@@ -257,7 +261,9 @@ fn methods_are_identified_and_fewer_digits_never_name_another() {
                     }
                     // Few digits may hide the step behind the exact motion; all digits may not.
                     StepVerdict::Exact => assert!(digits < 17, "{id}, h = {h}"),
-                    StepVerdict::NoneOf => panic!("{id}, h = {h}, {digits}: none of, nearest {}", step.candidates[0].id),
+                    StepVerdict::NoneOf => {
+                        panic!("{id}, h = {h}, {digits}: none of, nearest {}", step.candidates[0].id)
+                    }
                 }
             }
         }

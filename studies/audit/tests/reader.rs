@@ -16,7 +16,11 @@ fn rows(write: impl Fn(usize, f64, [f64; 4], [f64; 3]) -> String) -> String {
             let _ = tilt;
             let q = [(a + b).cos() * cos, (a - b).cos() * sin, (a - b).sin() * sin, (a + b).sin() * cos];
             // omega in the world: 0.7 z + 1.2 R z.
-            let z = [2.0 * (q[1] * q[3] + q[0] * q[2]), 2.0 * (q[2] * q[3] - q[0] * q[1]), 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])];
+            let z = [
+                2.0 * (q[1] * q[3] + q[0] * q[2]),
+                2.0 * (q[2] * q[3] - q[0] * q[1]),
+                1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]),
+            ];
             write(i, t, q, [1.2 * z[0], 1.2 * z[1], 0.7 + 1.2 * z[2]]) + "\n"
         })
         .collect()
@@ -35,7 +39,12 @@ fn check(name: &str, text: &str) {
     assert_eq!(t.rows(), 40, "{name}");
     assert!((t.time[20] - t.time[0] - 1.0).abs() < 1e-6, "{name}: {}", t.time[20]);
     let q = t.attitude.as_ref().unwrap_or_else(|| panic!("{name}: no attitude")).at(20);
-    let expected = [0.95_f64.cos() * 0.4_f64.cos(), 0.25_f64.cos() * 0.4_f64.sin(), -(0.25_f64.sin()) * 0.4_f64.sin(), 0.95_f64.sin() * 0.4_f64.cos()];
+    let expected = [
+        0.95_f64.cos() * 0.4_f64.cos(),
+        0.25_f64.cos() * 0.4_f64.sin(),
+        -(0.25_f64.sin()) * 0.4_f64.sin(),
+        0.95_f64.sin() * 0.4_f64.cos(),
+    ];
     let off = q.angle_to(integrator::Rotation::from_wxyz(expected));
     assert!(off < 1e-5, "{name}: attitude off by {off}, read as {:?}", t.recognised);
     if let Some(w) = t.omega_world(20) {
@@ -57,9 +66,18 @@ fn files_are_read_as_programs_write_them() {
     let header = "time,q_w,q_x,q_y,q_z,wx,wy,wz\n";
     check("plain", &format!("{header}{}", rows(wxyz(","))));
     check("BOM and CRLF", &format!("\u{feff}{header}{}", rows(wxyz(","))).replace('\n', "\r\n"));
-    check("tabs and comments", &format!("# made by hand\n% x\n// y\n{}{}", header.replace(',', "\t"), rows(wxyz("\t"))));
-    check("blanks, padded", &format!("# {}{}", header.replace(',', " "), rows(|i, t, q, w| format!("  {}  ", wxyz("   ")(i, t, q, w)))));
-    check("decimal comma", &format!("{}{}", header.replace(',', ";"), rows(|i, t, q, w| wxyz(";")(i, t, q, w).replace('.', ","))));
+    check(
+        "tabs and comments",
+        &format!("# made by hand\n% x\n// y\n{}{}", header.replace(',', "\t"), rows(wxyz("\t"))),
+    );
+    check(
+        "blanks, padded",
+        &format!("# {}{}", header.replace(',', " "), rows(|i, t, q, w| format!("  {}  ", wxyz("   ")(i, t, q, w)))),
+    );
+    check(
+        "decimal comma",
+        &format!("{}{}", header.replace(',', ";"), rows(|i, t, q, w| wxyz(";")(i, t, q, w).replace('.', ","))),
+    );
     check("trailing delimiter", &format!("{header}{}", rows(|i, t, q, w| wxyz(",")(i, t, q, w) + ",")));
     check("leading index", &format!(",{header}{}", rows(|i, t, q, w| format!("{i},{}", wxyz(",")(i, t, q, w)))));
     check("units below", &format!("{header}s,-,-,-,-,rad/s,rad/s,rad/s\n{}", rows(wxyz(","))));
@@ -69,12 +87,21 @@ fn files_are_read_as_programs_write_them() {
         let stamp = 1_403_636_580_838_555_648_i64 + i as i64 * 50_000_000;
         format!("{stamp},{:?},{:?},{:?},{:?},{:?},{:?},{:?}", q[0], q[1], q[2], q[3], w[0], w[1], w[2])
     };
-    check("EuRoC stamps", &format!("#timestamp [ns], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], w_x [rad s^-1], w_y [rad s^-1], w_z [rad s^-1]\n{}", rows(ns)));
+    check(
+        "EuRoC stamps",
+        &format!(
+            "#timestamp [ns], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], w_x [rad s^-1], w_y [rad s^-1], w_z [rad s^-1]\n{}",
+            rows(ns)
+        ),
+    );
     let xyzw = |_: usize, t: f64, q: [f64; 4], w: [f64; 3]| {
         let d = 180.0 / std::f64::consts::PI;
         format!("{},{:?},{:?},{:?},{:?},{:?},{:?},{:?}", t * 1e3, q[1], q[2], q[3], q[0], w[0] * d, w[1] * d, w[2] * d)
     };
-    check("ms, open order, deg/s", &format!("t_ms,q0,q1,q2,q3,angVelX_deg_s,angVelY_deg_s,angVelZ_deg_s\n{}", rows(xyzw)));
+    check(
+        "ms, open order, deg/s",
+        &format!("t_ms,q0,q1,q2,q3,angVelX_deg_s,angVelY_deg_s,angVelZ_deg_s\n{}", rows(xyzw)),
+    );
     let mrp = |_: usize, t: f64, q: [f64; 4], w: [f64; 3]| {
         let s = |i: usize| q[i] / (1.0 + q[0]);
         format!("{t:?},{:?},{:?},{:?},{:?},{:?},{:?}", s(1), s(2), s(3), w[0], w[1], w[2])
@@ -106,7 +133,9 @@ fn stamps_in_ns_keep_their_last_digit() {
 // Fails if TUM's order (scalar last) is lost where nothing in the file can decide it.
 #[test]
 fn eight_columns_without_names_are_tum() {
-    let text: String = (0..20).map(|i| format!("{} {} 0.5 -1 0 0 {} {}\n", i, 2 * i, (0.1 * f64::from(i)).sin(), (0.1 * f64::from(i)).cos())).collect();
+    let text: String = (0..20)
+        .map(|i| format!("{} {} 0.5 -1 0 0 {} {}\n", i, 2 * i, (0.1 * f64::from(i)).sin(), (0.1 * f64::from(i)).cos()))
+        .collect();
     let t = read(&text).expect("read");
     let q = t.attitude.expect("attitude").at(3);
     assert!((q.w - 0.3_f64.cos()).abs() < 1e-12 && (q.v.z - 0.3_f64.sin()).abs() < 1e-12);

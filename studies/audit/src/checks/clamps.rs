@@ -27,7 +27,10 @@ fn clamp(t: &Trajectory, v: &Vectors, what: &'static str, unit: &'static str, id
     let later = (1..norms.len().min(200) - 1).map(|i| fall(i).abs()).fold(0.0, f64::max);
     let same_direction = v.values[0].normalize().dot(&v.values[1].normalize());
     if norms.len() > 8 && fall(0) > 0.1 && fall(0) > 10.0 * later && same_direction > 0.9 {
-        let evidence = format!("|{what}| falls from {:.4} to {:.4} {unit} in the first interval and by at most {:.1e} of itself later", norms[0], norms[1], later);
+        let evidence = format!(
+            "|{what}| falls from {:.4} to {:.4} {unit} in the first interval and by at most {:.1e} of itself later",
+            norms[0], norms[1], later
+        );
         return Some(finding(norms[1], evidence));
     }
     if let Some((value, rows)) = plateau(&norms, 3, v.resolution.absolute) {
@@ -38,7 +41,14 @@ fn clamp(t: &Trajectory, v: &Vectors, what: &'static str, unit: &'static str, id
         let component: Vec<f64> = v.values.iter().map(|v| v[axis] * sign).collect();
         let (value, rows) = plateau(&component, 2, v.resolution.absolute)?;
         // The other components must go on changing.
-        Some(finding(value, format!("component {} of the {what} stands at {value:.4} {unit} in {rows} rows of {}, and nowhere above", ["x", "y", "z"][axis], t.rows())))
+        Some(finding(
+            value,
+            format!(
+                "component {} of the {what} stands at {value:.4} {unit} in {rows} rows of {}, and nowhere above",
+                ["x", "y", "z"][axis],
+                t.rows()
+            ),
+        ))
     })
 }
 

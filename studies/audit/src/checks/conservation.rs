@@ -45,8 +45,26 @@ pub fn check(t: &Trajectory, inertia: Vector3<f64>) -> Vec<Finding> {
         Finding::new(Check::Conservation, id, Verdict::Note, (quantity.to_owned(), value, unit), evidence)
     };
     vec![
-        finding("energy", "largest relative change of the rotational energy", c.energy, "", format!("{:.3e} of the start", c.energy)),
-        finding("momentum-size", "largest relative change of |L|", c.momentum_size, "", format!("{:.3e} of the start", c.momentum_size)),
-        finding("momentum-direction", "largest angle of L from its start, world frame", c.momentum_direction, "rad", format!("{:.4} rad", c.momentum_direction)),
+        finding(
+            "energy",
+            "largest relative change of the rotational energy",
+            c.energy,
+            "",
+            format!("{:.3e} of the start", c.energy),
+        ),
+        finding(
+            "momentum-size",
+            "largest relative change of |L|",
+            c.momentum_size,
+            "",
+            format!("{:.3e} of the start", c.momentum_size),
+        ),
+        finding(
+            "momentum-direction",
+            "largest angle of L from its start, world frame",
+            c.momentum_direction,
+            "rad",
+            format!("{:.4} rad", c.momentum_direction),
+        ),
     ]
 }

@@ -46,7 +46,12 @@ fn fit(rows: &[(Vector3<f64>, Vector3<f64>, Vector3<f64>)]) -> Option<Fit> {
 /// Standard errors that a coefficient must be away from what it should be.
 const SURELY: f64 = 5.0;
 
-fn finding(id: &'static str, verdict: Verdict, (quantity, value, unit): (&str, f64, &'static str), evidence: String) -> Finding {
+fn finding(
+    id: &'static str,
+    verdict: Verdict,
+    (quantity, value, unit): (&str, f64, &'static str),
+    evidence: String,
+) -> Finding {
     Finding::new(Check::Dynamics, id, verdict, (quantity.to_owned(), value, unit), evidence)
 }
 
@@ -97,11 +102,14 @@ fn translation(
         let limit = (20.0 * usual).max(0.05 * size);
         all.into_iter().zip(misfit).filter(|(_, m)| *m <= limit).map(|(r, _)| r).collect()
     };
-    let best = [0.0, 0.5, 1.0].into_iter().filter_map(|w| fit(&rows(w))).max_by(|a, b| a.explained.total_cmp(&b.explained));
+    let best =
+        [0.0, 0.5, 1.0].into_iter().filter_map(|w| fit(&rows(w))).max_by(|a, b| a.explained.total_cmp(&b.explained));
     let Some(fit) = best else { return vec![] };
     let mut found = Vec::new();
     let [factor, c] = fit.coefficients;
-    let noise = v.resolution.absolute / h / 1e-9_f64.max(median(&regular.iter().map(|i| v.values[*i].norm()).collect::<Vec<_>>()));
+    let noise = v.resolution.absolute
+        / h
+        / 1e-9_f64.max(median(&regular.iter().map(|i| v.values[*i].norm()).collect::<Vec<_>>()));
     let curved = matches!(force, Force::Spring { .. } | Force::Kepler { .. });
     // Between rows the force of a curved field changes by a part of (h omega)^2.
     let blur = if curved { curvature(force, x.values[0], h) } else { 0.0 };
@@ -109,7 +117,10 @@ fn translation(
         // A damping that acts on the gain of the step too takes c h of the force.
         let bound = SURELY * fit.errors[0] + blur + c.abs() * h + 1e-9 + 4.0 * noise;
         let off = (factor - 1.0).abs();
-        let evidence = format!("velocities change by {factor:.6} (+- {:.1e}) times what the scene's force gives", 2.0 * fit.errors[0]);
+        let evidence = format!(
+            "velocities change by {factor:.6} (+- {:.1e}) times what the scene's force gives",
+            2.0 * fit.errors[0]
+        );
         let verdict = if off > bound.max(1e-4) { Verdict::Fault } else { Verdict::Pass };
         found.push(finding("force-factor", verdict, ("factor of the force", factor, ""), evidence));
     }
@@ -117,7 +128,8 @@ fn translation(
     let significant = c.abs() > SURELY * fit.errors[1] + 8.0 * noise && c.abs() > 1e-5;
     if clear && significant && damped != Some(false) {
         let what = if c > 0.0 { "a damping" } else { "a drive" };
-        let evidence = format!("velocities change as by {what} -c v with c = {c:.5} 1/s (+- {:.1e})", 2.0 * fit.errors[1]);
+        let evidence =
+            format!("velocities change as by {what} -c v with c = {c:.5} 1/s (+- {:.1e})", 2.0 * fit.errors[1]);
         found.push(finding("linear-damping", Verdict::Fault, ("damping of the velocity", c, "1/s"), evidence));
     }
     found
@@ -145,7 +157,9 @@ fn rotation(
     let h = clock.interval;
     let Some(attitude) = &t.attitude else { return spin(t, clock, known) };
     let weight = |row: usize| match moment {
-        Some(Moment::Weight { arm, gravity }) => arm.cross(&attitude.at(row).rotate_back(gravity)).component_div(&inertia),
+        Some(Moment::Weight { arm, gravity }) => {
+            arm.cross(&attitude.at(row).rotate_back(gravity)).component_div(&inertia)
+        }
         _ => Vector3::zeros(),
     };
     let term = |w: Vector3<f64>| inertia.component_mul(&w).cross(&w).component_div(&inertia);
@@ -166,7 +180,10 @@ fn rotation(
     // The term must turn the angular velocity by more than rounding, and a thousandth of itself over the file.
     let matters = size * h > 64.0 * resolution && size * h * rows.len() as f64 > 1e-3 * turned;
     if matters {
-        let evidence = format!("omega' has {factor:.4} (+- {:.1e}) times the gyroscopic term I^-1 (I omega x omega)", 2.0 * fit.errors[0]);
+        let evidence = format!(
+            "omega' has {factor:.4} (+- {:.1e}) times the gyroscopic term I^-1 (I omega x omega)",
+            2.0 * fit.errors[0]
+        );
         let quantity = ("factor of the gyroscopic term", factor, "");
         if factor.abs() < 0.2 && fit.errors[0] < 0.1 {
             found.push(finding("gyroscopic-term-missing", Verdict::Fault, quantity, evidence));
@@ -225,11 +242,8 @@ fn bounces(t: &Trajectory, ball: Ball, g: Vector3<f64>) -> Option<Finding> {
     let up = -g.normalize();
     let energy = |i: usize| v.values[i].dot(&up).powi(2) + 2.0 * g.norm() * (x.values[i].dot(&up) - ball.radius);
     let bounces = (0..t.rows() - 1).filter(|&i| v.values[i].dot(&up) < 0.0 && v.values[i + 1].dot(&up) > 0.0);
-    let kept: Vec<f64> = bounces
-        .map(|i| (energy(i + 1).max(0.0) / energy(i)).sqrt())
-        .filter(|e| e.is_finite())
-        .take(1)
-        .collect();
+    let kept: Vec<f64> =
+        bounces.map(|i| (energy(i + 1).max(0.0) / energy(i)).sqrt()).filter(|e| e.is_finite()).take(1).collect();
     let measured = kept.first().copied().unwrap_or(f64::NAN);
     if !measured.is_finite() {
         return None;

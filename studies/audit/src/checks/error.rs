@@ -24,7 +24,8 @@ pub struct ErrorOf {
 pub fn measure(t: &Trajectory, motion: &Exact) -> Vec<ErrorOf> {
     let mut out = Vec::new();
     let mut add = |quantity, unit, errors: Vec<f64>| {
-        let max = errors.iter().copied().fold(0.0, |m: f64, e| if e.is_nan() || m.is_nan() { f64::NAN } else { m.max(e) });
+        let max =
+            errors.iter().copied().fold(0.0, |m: f64, e| if e.is_nan() || m.is_nan() { f64::NAN } else { m.max(e) });
         out.extend(errors.last().map(|end| ErrorOf { quantity, end: *end, max, unit }));
     };
     if let (Some(point), Some(x), Some(v)) = (&motion.point, &t.position, &t.velocity) {
@@ -33,7 +34,8 @@ pub fn measure(t: &Trajectory, motion: &Exact) -> Vec<ErrorOf> {
     }
     if let (Some(body), Some(attitude)) = (&motion.body, &t.attitude) {
         add("attitude", "rad", body.iter().enumerate().map(|(i, e)| e.0.angle_to(attitude.at(i))).collect());
-        let omega = |(i, e): (usize, &(_, nalgebra::Vector3<f64>))| t.omega_world(i).map_or(f64::NAN, |w| (w - e.1).norm());
+        let omega =
+            |(i, e): (usize, &(_, nalgebra::Vector3<f64>))| t.omega_world(i).map_or(f64::NAN, |w| (w - e.1).norm());
         add("angular-velocity", "rad/s", body.iter().enumerate().map(omega).collect());
     }
     if let (Some(angle), Some(a), Some(r)) = (&motion.angle, &t.angle, &t.angle_rate) {
@@ -44,14 +46,20 @@ pub fn measure(t: &Trajectory, motion: &Exact) -> Vec<ErrorOf> {
 }
 
 /// Errors, and findings: a bound that is broken, an exact motion, what a lag is responsible for.
-pub fn check(t: &Trajectory, subject: &Subject, pose_late: Option<f64>, max_error: Option<f64>) -> (Vec<ErrorOf>, Vec<Finding>) {
+pub fn check(
+    t: &Trajectory,
+    subject: &Subject,
+    pose_late: Option<f64>,
+    max_error: Option<f64>,
+) -> (Vec<ErrorOf>, Vec<Finding>) {
     let motion = exact(subject, t, 0.0);
     let errors = measure(t, &motion);
     let mut found = Vec::new();
     let source = motion.source.join(", ");
     for e in &errors {
         let evidence = format!("largest {:.3e} {}, {:.3e} at the end; exact motion: {source}", e.max, e.unit, e.end);
-        let broken = max_error.filter(|bound| !(e.max <= *bound) && matches!(e.quantity, "position" | "attitude" | "angle"));
+        let broken =
+            max_error.filter(|bound| !(e.max <= *bound) && matches!(e.quantity, "position" | "attitude" | "angle"));
         let verdict = if broken.is_some() { Verdict::Fault } else { Verdict::Note };
         let mut finding = Finding::new(Check::Error, "error", verdict, (e.quantity, e.max, e.unit), evidence);
         finding.bound = max_error;
@@ -60,8 +68,17 @@ pub fn check(t: &Trajectory, subject: &Subject, pose_late: Option<f64>, max_erro
     if let Some(late) = pose_late {
         let without = measure(t, &exact(subject, t, late));
         for (with, without) in errors.iter().zip(&without).filter(|(a, b)| b.max < 0.9 * a.max) {
-            let evidence = format!("without the lag of {late:.6} s the largest error falls from {:.3e} to {:.3e} {}", with.max, without.max, with.unit);
-            found.push(Finding::new(Check::Error, "error-without-lag", Verdict::Note, (with.quantity, without.max, with.unit), evidence));
+            let evidence = format!(
+                "without the lag of {late:.6} s the largest error falls from {:.3e} to {:.3e} {}",
+                with.max, without.max, with.unit
+            );
+            found.push(Finding::new(
+                Check::Error,
+                "error-without-lag",
+                Verdict::Note,
+                (with.quantity, without.max, with.unit),
+                evidence,
+            ));
         }
     }
     (errors, found)

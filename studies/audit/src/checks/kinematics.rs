@@ -47,10 +47,15 @@ struct Words {
     ids: [&'static str; 3],
 }
 
-const POSITION: Words = Words { pose: "position", rate: "velocity", ids: ["position-rule", "velocity-factor", "position-lags"] };
-const ATTITUDE: Words =
-    Words { pose: "attitude", rate: "angular velocity", ids: ["attitude-rule", "angular-velocity-factor", "attitude-lags"] };
-const ANGLE: Words = Words { pose: "angle", rate: "angle rate", ids: ["angle-rule", "angle-rate-factor", "angle-lags"] };
+const POSITION: Words =
+    Words { pose: "position", rate: "velocity", ids: ["position-rule", "velocity-factor", "position-lags"] };
+const ATTITUDE: Words = Words {
+    pose: "attitude",
+    rate: "angular velocity",
+    ids: ["attitude-rule", "angular-velocity-factor", "attitude-lags"],
+};
+const ANGLE: Words =
+    Words { pose: "angle", rate: "angle rate", ids: ["angle-rule", "angle-rate-factor", "angle-lags"] };
 
 /// All findings. `record_every`: engine steps in a row, where known.
 pub fn check(t: &Trajectory, clock: &Clock, record_every: Option<u64>) -> Vec<Finding> {
@@ -74,7 +79,13 @@ pub fn check(t: &Trajectory, clock: &Clock, record_every: Option<u64>) -> Vec<Fi
         found.extend(judge(ANGLE, &moved, clock, record_every, tolerance, &|s| correlation_flat(t, &x, &v, s)));
         if a.unwrapped > 0 {
             let evidence = format!("the angle jumps by a turn {} time(s); the turns were added", a.unwrapped);
-            found.push(Finding::new(Check::Kinematics, "wrapped-angle", Verdict::Note, ("jumps", a.unwrapped as f64, ""), evidence));
+            found.push(Finding::new(
+                Check::Kinematics,
+                "wrapped-angle",
+                Verdict::Note,
+                ("jumps", a.unwrapped as f64, ""),
+                evidence,
+            ));
         }
     }
     if t.attitude.is_some() && t.omega.is_some() && t.scored.is_some() {
@@ -131,8 +142,21 @@ fn judge(
     }
     let mut found = Vec::new();
     if let Some((name, kept, worst)) = rule(&regular, tolerance) {
-        let evidence = format!("{} in {kept} of {} rows, to {worst:.1e}", name.replace('x', &words.pose[..1]).replace('p', "x"), regular.len());
-        found.push(Finding::new(Check::Kinematics, words.ids[0], Verdict::Pass, (format!("{} moved by {}", words.pose, words.rate), worst, ""), evidence).within(tolerance));
+        let evidence = format!(
+            "{} in {kept} of {} rows, to {worst:.1e}",
+            name.replace('x', &words.pose[..1]).replace('p', "x"),
+            regular.len()
+        );
+        found.push(
+            Finding::new(
+                Check::Kinematics,
+                words.ids[0],
+                Verdict::Pass,
+                (format!("{} moved by {}", words.pose, words.rate), worst, ""),
+                evidence,
+            )
+            .within(tolerance),
+        );
         return found;
     }
     let smooth = without_jumps(&regular);
@@ -185,7 +209,10 @@ fn factor(words: Words, moved: &[&Moved]) -> Option<Finding> {
     }
     let named = FACTORS.iter().find(|(f, _)| (factor / f - 1.0).abs() < 0.03);
     let meaning = named.map_or(String::new(), |(_, words)| format!(": the rate is {words}"));
-    let evidence = format!("{} moves by {factor:.4} times its {}{meaning}; what is left is {missed:.1e} of the movement", words.pose, words.rate);
+    let evidence = format!(
+        "{} moves by {factor:.4} times its {}{meaning}; what is left is {missed:.1e} of the movement",
+        words.pose, words.rate
+    );
     let quantity = (format!("factor between {} and {}", words.pose, words.rate), factor, "");
     Some(Finding::new(Check::Kinematics, words.ids[1], Verdict::Fault, quantity, evidence).within(1.0))
 }
@@ -199,7 +226,9 @@ fn lag(
     tolerance: f64,
     shifted: &dyn Fn(i64) -> f64,
 ) -> Option<Finding> {
-    let best = (-LARGEST_LAG..=LARGEST_LAG).map(|s| (shifted(s), s)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.abs().cmp(&b.1.abs())))?;
+    let best = (-LARGEST_LAG..=LARGEST_LAG)
+        .map(|s| (shifted(s), s))
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.abs().cmp(&b.1.abs())))?;
     let whole = if best.0 < 0.1 * shifted(0) { best.1 } else { 0 };
     let (mut above, mut below, mut size) = (0.0, 0.0, 0.0);
     for m in moved {
@@ -212,7 +241,11 @@ fn lag(
     let fraction = -above / below;
     let explained = above * above / (below * size);
     let change = (below / moved.len() as f64).sqrt() * interval;
-    if below == 0.0 || change * interval < 4.0 * tolerance || !(size > 0.0) || fraction.abs() > LARGEST_LAG as f64 * interval {
+    if below == 0.0
+        || change * interval < 4.0 * tolerance
+        || !(size > 0.0)
+        || fraction.abs() > LARGEST_LAG as f64 * interval
+    {
         return None;
     }
     let late = if whole == 0 { fraction } else { whole as f64 * interval };
@@ -221,9 +254,13 @@ fn lag(
     // A method that moves the pose by the old or the new rate is half a step off.
     let of_method = record_every.map_or(0.27, |k| 0.55 / k as f64);
     let quantity = (format!("lag of the {} behind its rate", words.pose), late, "s");
-    let evidence = format!("the {} fits the {} best {late:.6} s ({rows:.3} rows{per_row}) late", words.pose, words.rate);
+    let evidence =
+        format!("the {} fits the {} best {late:.6} s ({rows:.3} rows{per_row}) late", words.pose, words.rate);
     // The mean of two rates misses a curved rate, and a linear step of an attitude turns by (h omega)^2 / 12 too little.
-    let bends = moved.windows(2).map(|w| (w[1].rates[1] - w[1].rates[0] - w[0].rates[1] + w[0].rates[0]).norm_squared()).sum::<f64>();
+    let bends = moved
+        .windows(2)
+        .map(|w| (w[1].rates[1] - w[1].rates[0] - w[0].rates[1] + w[0].rates[0]).norm_squared())
+        .sum::<f64>();
     let bend = (bends / below).sqrt() / interval;
     let speed = (moved.iter().map(|m| m.mean.norm_squared()).sum::<f64>() / moved.len() as f64).sqrt();
     let turn = speed * interval / record_every.unwrap_or(1) as f64;
@@ -233,7 +270,11 @@ fn lag(
         return Some(Finding::new(Check::Kinematics, words.ids[2], Verdict::Fault, quantity, evidence));
     }
     (explained > 0.9).then(|| {
-        let evidence = format!("{evidence}: as by a step of {:.6} s with the {} rate", 2.0 * late.abs(), if late > 0.0 { "old" } else { "new" });
+        let evidence = format!(
+            "{evidence}: as by a step of {:.6} s with the {} rate",
+            2.0 * late.abs(),
+            if late > 0.0 { "old" } else { "new" }
+        );
         Finding::new(Check::Kinematics, words.ids[0], Verdict::Note, quantity, evidence)
     })
 }
@@ -281,28 +322,54 @@ fn attitude(t: &Trajectory, clock: &Clock, record_every: Option<u64>) -> Vec<Fin
     }
     if let Some((name, worst)) = attitude_rule(t, clock, tolerance) {
         let quantity = ("attitude moved by angular velocity".to_owned(), worst, "rad");
-        return vec![Finding::new(Check::Kinematics, "attitude-rule", Verdict::Pass, quantity, format!("{name}, to {worst:.1e} rad")).within(tolerance)];
+        return vec![
+            Finding::new(
+                Check::Kinematics,
+                "attitude-rule",
+                Verdict::Pass,
+                quantity,
+                format!("{name}, to {worst:.1e} rad"),
+            )
+            .within(tolerance),
+        ];
     }
-    let shifted = |s: i64| {
-        shifted_misfit(t.rows(), s, &|i, j| (moved[j].by, moved[i].mean * moved[i].h))
-    };
+    let shifted = |s: i64| shifted_misfit(t.rows(), s, &|i, j| (moved[j].by, moved[i].mean * moved[i].h));
     let regular: Vec<&Moved> = moved.iter().enumerate().filter(|(i, _)| clock.is_regular(*i)).map(|(_, m)| m).collect();
     let regular = without_jumps(&regular);
     let mut found = Vec::new();
     if let Some(factor) = factor(ATTITUDE, &regular) {
         found.push(factor);
     } else if scored.misfit > 0.3 && regular.len() > 3 {
-        let evidence = format!("no frame, unit, order or direction makes q' = q omega / 2: the best misses {:.0} % of the turning", 100.0 * scored.misfit);
-        found.push(Finding::new(Check::Kinematics, "attitude-against-angular-velocity", Verdict::Fault, ("misfit", scored.misfit, ""), evidence).within(0.3));
+        let evidence = format!(
+            "no frame, unit, order or direction makes q' = q omega / 2: the best misses {:.0} % of the turning",
+            100.0 * scored.misfit
+        );
+        found.push(
+            Finding::new(
+                Check::Kinematics,
+                "attitude-against-angular-velocity",
+                Verdict::Fault,
+                ("misfit", scored.misfit, ""),
+                evidence,
+            )
+            .within(0.3),
+        );
     }
     if found.is_empty() {
         found.extend(lag(ATTITUDE, &regular, clock.interval, record_every, tolerance, &shifted));
     }
-    let still = a.raw[1] == a.raw[0] && largest > 0.0 && w.values[1].norm() > 0.0 && t.rows() > 3 && a.raw[2] != a.raw[1];
+    let still =
+        a.raw[1] == a.raw[0] && largest > 0.0 && w.values[1].norm() > 0.0 && t.rows() > 3 && a.raw[2] != a.raw[1];
     let known = t.position.as_ref().zip(t.velocity.as_ref()).is_some_and(|(x, v)| late_start(t, x, v).is_some());
     if still && !known {
         let evidence = "the attitude of row 2 is that of row 1 while the body turns: the pose is written one step late";
-        found.push(Finding::new(Check::Kinematics, "pose-late-by-one-step", Verdict::Fault, ("lag of the pose", 1.0, "steps"), evidence));
+        found.push(Finding::new(
+            Check::Kinematics,
+            "pose-late-by-one-step",
+            Verdict::Fault,
+            ("lag of the pose", 1.0, "steps"),
+            evidence,
+        ));
     }
     found
 }
@@ -322,7 +389,11 @@ fn attitude_rule(t: &Trajectory, clock: &Clock, tolerance: f64) -> Option<(&'sta
         if rule == 2 { moved.wxyz() } else { moved.normalized().wxyz() }
     };
     let names = [
-        ["q1 = q0 exp(h omega0) (old rate)", "q1 = q0 exp(h omega1) (new rate)", "q1 = q0 exp(h (omega0 + omega1) / 2)"],
+        [
+            "q1 = q0 exp(h omega0) (old rate)",
+            "q1 = q0 exp(h omega1) (new rate)",
+            "q1 = q0 exp(h (omega0 + omega1) / 2)",
+        ],
         [
             "q1 = normalised q0 + h/2 omega0 q0 (old rate)",
             "q1 = normalised q0 + h/2 omega1 q0 (new rate)",
@@ -361,7 +432,11 @@ fn attitude_rule(t: &Trajectory, clock: &Clock, tolerance: f64) -> Option<(&'sta
         [one] => Some(*one),
         [(name, worst), rest @ ..] => {
             let (_, second) = rest[0];
-            Some(if second > 10.0 * worst { (name, *worst) } else { ("several rules fit alike, as the rate hardly changes", *worst) })
+            Some(if second > 10.0 * worst {
+                (name, *worst)
+            } else {
+                ("several rules fit alike, as the rate hardly changes", *worst)
+            })
         }
     }
 }
@@ -376,9 +451,12 @@ fn norm(t: &Trajectory) -> Option<Finding> {
     let quantity = ("norm of the quaternion", value, "");
     if worst <= bound {
         let evidence = format!("within {worst:.1e} of 1");
-        return Some(Finding::new(Check::Conservation, "quaternion-norm", Verdict::Pass, quantity, evidence).within(1.0 + bound));
+        return Some(
+            Finding::new(Check::Conservation, "quaternion-norm", Verdict::Pass, quantity, evidence).within(1.0 + bound),
+        );
     }
-    let evidence = format!("|q| = {value:.6} at {:.4} s (row {}): the quaternion is not normalised", t.time[row], row + 1);
+    let evidence =
+        format!("|q| = {value:.6} at {:.4} s (row {}): the quaternion is not normalised", t.time[row], row + 1);
     let verdict = if worst > 1e-6 { Verdict::Fault } else { Verdict::Note };
     Some(Finding::new(Check::Conservation, "quaternion-norm", verdict, quantity, evidence).within(1.0 + bound))
 }
@@ -394,16 +472,45 @@ pub fn contradictions(t: &Trajectory) -> Vec<Finding> {
         None => None,
     };
     if let Some(named) = named.filter(|n| *n != t.omega_frame && scored.misfit < 0.3 && !attitude.reading.inverse) {
-        let evidence = format!("the names say {} axes; q' = q omega / 2 holds in {} axes (to {:.1e})", frame(named), frame(t.omega_frame), scored.misfit);
-        found.push(Finding::new(Check::Reading, "frame-not-as-named", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));
+        let evidence = format!(
+            "the names say {} axes; q' = q omega / 2 holds in {} axes (to {:.1e})",
+            frame(named),
+            frame(t.omega_frame),
+            scored.misfit
+        );
+        found.push(Finding::new(
+            Check::Reading,
+            "frame-not-as-named",
+            Verdict::Fault,
+            ("misfit", scored.misfit, ""),
+            evidence,
+        ));
     }
     if t.order_not_as_named {
-        let evidence = format!("the names say the scalar first; q' = q omega / 2 holds with the scalar last (to {:.1e})", scored.misfit);
-        found.push(Finding::new(Check::Reading, "quaternion-order-not-as-named", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));
+        let evidence = format!(
+            "the names say the scalar first; q' = q omega / 2 holds with the scalar last (to {:.1e})",
+            scored.misfit
+        );
+        found.push(Finding::new(
+            Check::Reading,
+            "quaternion-order-not-as-named",
+            Verdict::Fault,
+            ("misfit", scored.misfit, ""),
+            evidence,
+        ));
     }
     if attitude.reading.inverse && scored.misfit < 0.3 {
-        let evidence = format!("q' = q omega / 2 holds only for the inverse of the attitude (to {:.1e}): it turns world into body", scored.misfit);
-        found.push(Finding::new(Check::Reading, "attitude-is-inverse", Verdict::Fault, ("misfit", scored.misfit, ""), evidence));
+        let evidence = format!(
+            "q' = q omega / 2 holds only for the inverse of the attitude (to {:.1e}): it turns world into body",
+            scored.misfit
+        );
+        found.push(Finding::new(
+            Check::Reading,
+            "attitude-is-inverse",
+            Verdict::Fault,
+            ("misfit", scored.misfit, ""),
+            evidence,
+        ));
     }
     found
 }

@@ -33,7 +33,8 @@ pub fn check(t: &Trajectory) -> (Clock, Vec<Finding>) {
     let interval = mean_interval(&forward);
     let mut found = Vec::new();
     // The difference of two rounded times, and the rounding of i h.
-    let tolerance = 4.0 * t.time_resolution + 4.0 * f64::EPSILON * t.time.last().map_or(0.0, |t| t.abs()) + 1e-9 * interval;
+    let tolerance =
+        4.0 * t.time_resolution + 4.0 * f64::EPSILON * t.time.last().map_or(0.0, |t| t.abs()) + 1e-9 * interval;
     let (mut back, mut repeated, mut gaps, mut uneven) = (vec![], vec![], vec![], vec![]);
     for (i, step) in steps.iter().enumerate() {
         let rows = step / interval;
@@ -52,7 +53,8 @@ pub fn check(t: &Trajectory) -> (Clock, Vec<Finding>) {
         format!("at row {}{}", named.join(", "), if list.len() > NAMED { ", ..." } else { "" })
     };
     if let Some(first) = back.first() {
-        let evidence = format!("time runs backwards {} time(s), {}, first by {:.6} s", back.len(), rows(&back), -steps[*first]);
+        let evidence =
+            format!("time runs backwards {} time(s), {}, first by {:.6} s", back.len(), rows(&back), -steps[*first]);
         found.push(finding("clock-reset", Verdict::Fault, back.len() as f64, "rows", evidence));
     }
     if !repeated.is_empty() {
@@ -88,7 +90,8 @@ fn unevenness(t: &Trajectory, steps: &[f64], interval: f64, uneven: &[usize]) ->
     let rms = (uneven.iter().map(|i| (steps[*i] - interval).powi(2)).sum::<f64>() / steps.len() as f64).sqrt();
     if let Some(h) = single_sum(&t.time) {
         let drift = (t.time[t.rows() - 1] - t.time[0]) - h * (t.rows() - 1) as f64;
-        let evidence = format!("times are the f32 sum of {h}: after {} rows the clock is off by {drift:.2e} s", t.rows());
+        let evidence =
+            format!("times are the f32 sum of {h}: after {} rows the clock is off by {drift:.2e} s", t.rows());
         return finding("f32-clock", Verdict::Fault, drift, "s", evidence);
     }
     if single_valued(&t.time) {
@@ -96,7 +99,8 @@ fn unevenness(t: &Trajectory, steps: &[f64], interval: f64, uneven: &[usize]) ->
         return finding("f32-clock", Verdict::Fault, rms, "s", evidence);
     }
     let share = uneven.len() as f64 / steps.len() as f64;
-    let evidence = format!("{} of {} intervals differ from {interval:.9} s, rms {rms:.2e} s", uneven.len(), steps.len());
+    let evidence =
+        format!("{} of {} intervals differ from {interval:.9} s, rms {rms:.2e} s", uneven.len(), steps.len());
     let jitters = share > 0.05 || rms > 0.01 * interval;
     finding("jitter", if jitters { Verdict::Fault } else { Verdict::Note }, rms, "s", evidence)
 }

@@ -125,7 +125,8 @@ pub(super) fn find(path: &Path, head: &[u8], whole: bool) -> Result<Dialect, Err
     let end = if whole { text.len() } else { text.iter().rposition(|b| *b == b'\n').unwrap_or(text.len()) };
     let text = String::from_utf8_lossy(&text[..end]);
     let lines: Vec<&str> = text.split('\n').map(str::trim).collect();
-    let Some((first, dialect)) = lines.iter().enumerate().find_map(|(i, line)| Some((i, first_row(line, &lines[i..])?)))
+    let Some((first, dialect)) =
+        lines.iter().enumerate().find_map(|(i, line)| Some((i, first_row(line, &lines[i..])?)))
     else {
         let line = lines.iter().position(|line| !line.is_empty()).map_or(1, |i| i + 1);
         let shown: String = lines[line - 1].chars().take(60).collect();
@@ -158,8 +159,7 @@ fn first_row(line: &str, rest: &[&str]) -> Option<Dialect> {
         };
         let (count, found, plain) = numbers(line);
         let agrees = next.is_none_or(|next| numbers(next).1 * 2 >= found);
-        let dialect =
-            Dialect { separator, decimal_comma, cells: count, names: vec![], units: vec![], lines_before: 0 };
+        let dialect = Dialect { separator, decimal_comma, cells: count, names: vec![], units: vec![], lines_before: 0 };
         (plain && found >= 2 && found * 2 > count.min(4) && agrees).then_some(dialect)
     })
 }

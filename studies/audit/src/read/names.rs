@@ -246,7 +246,8 @@ fn by_patterns(name: &str, unit_text: Option<&str>) -> Option<Known> {
         words.iter().enumerate().filter(|(i, w)| *i == 0 || frame_at(w).is_none()).map(|(_, w)| *w).collect();
     (0..kept.len()).find_map(|dropped| {
         let rest = kept[dropped..].join("_");
-        let mut found: Vec<(&Pattern, String)> = NAMES.patterns.iter().filter_map(|p| Some((p, matched(p, &rest)?))).collect();
+        let mut found: Vec<(&Pattern, String)> =
+            NAMES.patterns.iter().filter_map(|p| Some((p, matched(p, &rest)?))).collect();
         if let Some(text) = unit_text.filter(|t| !t.is_empty()) {
             let kinds: Vec<Kind> = NAMES.units.iter().filter(|u| u.name == unit_name(text)).map(|u| u.kind).collect();
             found.retain(|(p, _)| kinds.iter().any(|k| fits(p.role, *k)));

@@ -14,8 +14,8 @@ use serde::Serialize;
 
 pub use candidate::Moves;
 use candidate::{Candidate, Kin};
-use integrator::Rotation;
 use damping::{Damping, Rule, When};
+use integrator::Rotation;
 
 use crate::checks::time::Clock;
 use crate::finding::quantile;
@@ -137,19 +137,24 @@ impl File<'_> {
         let t = self.t;
         let own = self.kin(row);
         let unit = |r: f64| r.max(f64::MIN_POSITIVE);
-        let of = |v: &Option<crate::trajectory::Vectors>| v.as_ref().map_or(f64::INFINITY, |v| unit(v.resolution.absolute));
+        let of =
+            |v: &Option<crate::trajectory::Vectors>| v.as_ref().map_or(f64::INFINITY, |v| unit(v.resolution.absolute));
         let d = match self.moves {
-            Moves::Translation => ((kin.x - own.x).norm() / of(&t.position)).max((kin.v - own.v).norm() / of(&t.velocity)),
+            Moves::Translation => {
+                ((kin.x - own.x).norm() / of(&t.position)).max((kin.v - own.v).norm() / of(&t.velocity))
+            }
             Moves::Rotation => {
                 let res = t.attitude.as_ref().map_or(1.0, |a| unit(a.resolution.absolute));
-                let size = |sign: f64| {
-                    2.0 * kin.q.iter().zip(&own.q).map(|(a, b)| (a - sign * b).powi(2)).sum::<f64>().sqrt()
-                };
+                let size =
+                    |sign: f64| 2.0 * kin.q.iter().zip(&own.q).map(|(a, b)| (a - sign * b).powi(2)).sum::<f64>().sqrt();
                 (size(1.0).min(size(-1.0)) / res).max((kin.w - own.w).norm() / of(&t.omega))
             }
             Moves::Angle => {
-                let of = |s: &Option<crate::trajectory::Scalars>| s.as_ref().map_or(f64::INFINITY, |s| unit(s.resolution.absolute));
-                ((kin.angle[0] - own.angle[0]).abs() / of(&t.angle)).max((kin.angle[1] - own.angle[1]).abs() / of(&t.angle_rate))
+                let of = |s: &Option<crate::trajectory::Scalars>| {
+                    s.as_ref().map_or(f64::INFINITY, |s| unit(s.resolution.absolute))
+                };
+                ((kin.angle[0] - own.angle[0]).abs() / of(&t.angle))
+                    .max((kin.angle[1] - own.angle[1]).abs() / of(&t.angle_rate))
             }
         };
         if d.is_finite() { d } else { f64::MAX }
@@ -209,7 +214,12 @@ fn rotation_and_angle(t: &Trajectory, clock: &Clock, physics: &Physics, record_e
         } else {
             given(physics.angular_damping)
         };
-        out.extend(search(&file, &rotation::candidates(inertia, moment, &damping, t.omega_frame, single), None, record_every));
+        out.extend(search(
+            &file,
+            &rotation::candidates(inertia, moment, &damping, t.omega_frame, single),
+            None,
+            record_every,
+        ));
     }
     if let (Some(square), Some(_), Some(_)) = (physics.pendulum, &t.angle, &t.angle_rate) {
         let file = File { t, clock, moves: Moves::Angle, ball: None };
@@ -292,7 +302,8 @@ fn loss(
             [lost.dot(&mean), mean.norm_squared(), (1.0 + mean.norm()) * mean.norm_squared()]
         })
         .collect();
-    let ratio = |j: usize| quantile(&changes.iter().map(|c| c[0] / c[j]).filter(|r| r.is_finite()).collect::<Vec<_>>(), 0.5);
+    let ratio =
+        |j: usize| quantile(&changes.iter().map(|c| c[0] / c[j]).filter(|r| r.is_finite()).collect::<Vec<_>>(), 0.5);
     let losing = changes.iter().filter(|c| c[0] > 0.0).count();
     let rate = ratio(1);
     (rate > 1e-5 && losing * 10 > changes.len() * 8).then(|| (rate, ratio(2)))
@@ -315,7 +326,12 @@ fn short_decimals(x: f64) -> Vec<f64> {
     out
 }
 
-fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, record_every: Option<u64>) -> Option<Identified> {
+fn search(
+    file: &File<'_>,
+    candidates: &[Candidate],
+    force: Option<Force>,
+    record_every: Option<u64>,
+) -> Option<Identified> {
     let rows = file.rows_of(force);
     if rows.len() < 2 || !moves(file, &rows) {
         return None;
@@ -326,7 +342,11 @@ fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, recor
     let mut pool: Vec<(f64, usize, u64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         for &k in ks.iter().filter(|k| candidate.steps.is_none_or(|only| only == **k)) {
-            let scores = if candidate.memory { free_run(file, candidate, k, FIRST * 2) } else { from_rows(file, candidate, k, &first) };
+            let scores = if candidate.memory {
+                free_run(file, candidate, k, FIRST * 2)
+            } else {
+                from_rows(file, candidate, k, &first)
+            };
             let score = quantile(&scores, 0.4) / allowed(k, file.t.rounding);
             pool.push((score, c, k));
         }
@@ -337,7 +357,8 @@ fn search(file: &File<'_>, candidates: &[Candidate], force: Option<Force>, recor
     let mut tried: Vec<Tried> = Vec::new();
     for &(_, c, k) in pool.iter().take(FINALISTS) {
         let candidate = &candidates[c];
-        let scores = if candidate.memory { free_run(file, candidate, k, 200) } else { from_rows(file, candidate, k, &compared) };
+        let scores =
+            if candidate.memory { free_run(file, candidate, k, 200) } else { from_rows(file, candidate, k, &compared) };
         let limit = allowed(k, file.t.rounding);
         tried.push(Tried {
             id: candidate.id.clone(),
@@ -395,7 +416,8 @@ fn late_pose(file: &File<'_>, candidates: &[Candidate], tried: &[Tried], first: 
         })
     };
     let plain = |c: &&(usize, &Candidate)| !c.1.memory && c.1.substeps == 1;
-    let mut fitting: Vec<usize> = candidates.iter().enumerate().filter(|c| plain(&c) && fits(c.1)).map(|(i, _)| i).collect();
+    let mut fitting: Vec<usize> =
+        candidates.iter().enumerate().filter(|c| plain(&c) && fits(c.1)).map(|(i, _)| i).collect();
     fitting.sort_by_key(|c| !candidates[*c].id.starts_with("semi-implicit"));
     fitting.first().map(|c| (*c, k))
 }
@@ -505,5 +527,13 @@ fn verdict(file: &File<'_>, mut tried: Vec<Tried>, pool: usize, rows: usize) -> 
         tried = merged(tried, file.t.rounding == Rounding::Single);
         if tried.len() == 1 { StepVerdict::Identified } else { StepVerdict::OneOf }
     };
-    Identified { moves: file.moves, verdict, candidates: tried, tried: pool, resolution: resolution.unwrap_or(0.0), rows, pose_late: false }
+    Identified {
+        moves: file.moves,
+        verdict,
+        candidates: tried,
+        tried: pool,
+        resolution: resolution.unwrap_or(0.0),
+        rows,
+        pose_late: false,
+    }
 }

@@ -21,10 +21,8 @@ pub(crate) fn top(
     let mut wanted: Vec<f64> = times.iter().flatten().copied().collect();
     wanted.sort_by(f64::total_cmp);
     wanted.dedup();
-    let mut s = State {
-        q: Vector4::new(q0.w, q0.v.x, q0.v.y, q0.v.z),
-        v: Vector4::new(0.0, omega0.x, omega0.y, omega0.z),
-    };
+    let mut s =
+        State { q: Vector4::new(q0.w, q0.v.x, q0.v.y, q0.v.z), v: Vector4::new(0.0, omega0.x, omega0.y, omega0.z) };
     let mut states = Vec::with_capacity(wanted.len());
     let mut now = wanted.first().copied()?.min(0.0);
     for &time in &wanted {

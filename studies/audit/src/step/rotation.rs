@@ -90,7 +90,10 @@ pub(super) fn candidates(
                             if substeps > 1 && (turn != Turn::AsMethod || !is_substepped(scheme)) {
                                 continue;
                             }
-                            all.push(candidate(Plan { scheme, update, turn, body, damping, substeps, frame }, precision));
+                            all.push(candidate(
+                                Plan { scheme, update, turn, body, damping, substeps, frame },
+                                precision,
+                            ));
                         }
                     }
                 }
@@ -124,8 +127,7 @@ fn is_substepped(scheme: Scheme) -> bool {
         Scheme::General(
             MethodId::SemiImplicitEuler,
             Storage::BodyOmega | Storage::WorldOmega | Storage::WithoutGyroscopicTerm
-        )
-            | Scheme::Rigid(RigidStep::ImplicitGyroscopic | RigidStep::RestoredMomentum)
+        ) | Scheme::Rigid(RigidStep::ImplicitGyroscopic | RigidStep::RestoredMomentum)
     )
 }
 
@@ -163,7 +165,14 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
     let id = suffixed(name(&plan), plan.damping, precision);
-    Candidate { id, memory: false, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: plan.substeps, run: Box::new(run) }
+    Candidate {
+        id,
+        memory: false,
+        steps: plan.damping.and_then(|d| d.steps),
+        damping: plan.damping.map(|d| d.c),
+        substeps: plan.substeps,
+        run: Box::new(run),
+    }
 }
 
 fn drag(damping: Option<Damping>) -> Drag {
@@ -322,7 +331,8 @@ impl<T: Single> Model<T> for Bare {
         let inertia = body.inertia.map(T::lit);
         let omega_body = if self.plan.world { q.rotate_back(omega) } else { omega };
         let at = Kinematics { position: Fixed::zero(), velocity: Fixed::zero(), attitude: q, omega_body };
-        let torque = integrator::rigid_body::RigidBody::torque(&body, T::lit(0.0), &at).plus_in_body(q, Vector3::zero());
+        let torque =
+            integrator::rigid_body::RigidBody::torque(&body, T::lit(0.0), &at).plus_in_body(q, Vector3::zero());
         let gyroscopic = if self.plan.gyroscopic {
             integrator::rotation::cross(inertia.component_mul(&omega_body), omega_body)
         } else {
@@ -361,9 +371,14 @@ fn raw_candidates(
     schemes.extend(Memory::ALL.map(RawScheme::Memory));
     schemes.push(RawScheme::MuntheKaas);
     for scheme in schemes {
-        for (world, normalise, gyroscopic) in
-            [(true, false, true), (true, true, true), (false, false, true), (false, true, true), (false, true, false), (true, false, false)]
-        {
+        for (world, normalise, gyroscopic) in [
+            (true, false, true),
+            (true, true, true),
+            (false, false, true),
+            (false, true, true),
+            (false, true, false),
+            (true, false, false),
+        ] {
             // Both Eulers, normalised, are steps of a pose.
             let pose = matches!(scheme, RawScheme::Method(MethodId::ExplicitEuler | MethodId::SemiImplicitEuler));
             let force = damping.is_none_or(|d| d.rule.is_force());
@@ -393,7 +408,14 @@ fn raw_candidate(plan: RawPlan, precision: Precision) -> Candidate {
         Precision::Single => run_raw::<f32>(plan, start, h, k, rows),
     };
     let memory = matches!(plan.scheme, RawScheme::Memory(_));
-    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: 1, run: Box::new(run) }
+    Candidate {
+        id,
+        memory,
+        steps: plan.damping.and_then(|d| d.steps),
+        damping: plan.damping.map(|d| d.c),
+        substeps: 1,
+        run: Box::new(run),
+    }
 }
 
 struct Once<'a, T: Single> {

@@ -67,7 +67,8 @@ pub(super) fn candidates(force: Force, damping: &[Option<Damping>], single: bool
                     all.push(candidate(Plan { scheme, force, damping, substeps: 1, frozen: true }, precision));
                 }
                 for substeps in [2, 3, 4, 8] {
-                    let common = matches!(scheme, Scheme::Method(MethodId::SemiImplicitEuler | MethodId::ExplicitEuler));
+                    let common =
+                        matches!(scheme, Scheme::Method(MethodId::SemiImplicitEuler | MethodId::ExplicitEuler));
                     if common {
                         all.push(candidate(Plan { scheme, force, damping, substeps, frozen: false }, precision));
                         if !constant {
@@ -100,7 +101,14 @@ fn candidate(plan: Plan, precision: Precision) -> Candidate {
         Precision::Double => run::<f64>(plan, start, h, k, rows),
         Precision::Single => run::<f32>(plan, start, h, k, rows),
     };
-    Candidate { id, memory, steps: plan.damping.and_then(|d| d.steps), damping: plan.damping.map(|d| d.c), substeps: plan.substeps, run: Box::new(run) }
+    Candidate {
+        id,
+        memory,
+        steps: plan.damping.and_then(|d| d.steps),
+        damping: plan.damping.map(|d| d.c),
+        substeps: plan.substeps,
+        run: Box::new(run),
+    }
 }
 
 fn run<T: Single>(plan: Plan, start: &Kin, h: f64, k: u64, rows: u64) -> Vec<Kin> {

@@ -27,11 +27,13 @@ pub(super) fn trajectory(table: &Table, layout: &Layout, choices: &Choices) -> R
     };
     take_time(&mut out, table, layout)?;
     let named = layout.get(Role::Time).and_then(|g| g.unit.clone());
-    let by_name = named.map(|(factor, unit)| (factor, unit.clone(), format!("unit {unit} in the name"))).or_else(|| epoch(&out));
+    let by_name =
+        named.map(|(factor, unit)| (factor, unit.clone(), format!("unit {unit} in the name"))).or_else(|| epoch(&out));
     if let Some((factor, ..)) = &by_name {
         scale_time(&mut out, *factor);
     }
-    let vectors = |role: Role| layout.get(role).map(|g| take_vectors(table, g, rounding, g.unit.as_ref().map_or(1.0, |u| u.0)));
+    let vectors =
+        |role: Role| layout.get(role).map(|g| take_vectors(table, g, rounding, g.unit.as_ref().map_or(1.0, |u| u.0)));
     out.position = vectors(Role::Position);
     out.velocity = vectors(Role::Velocity);
     out.angle = layout.get(Role::Angle).map(|g| scalars(table, g, rounding, true));
@@ -59,9 +61,16 @@ pub(super) fn trajectory(table: &Table, layout: &Layout, choices: &Choices) -> R
             out.recognised.push(recognised(table, group, unit));
         }
     }
-    let used: Vec<usize> = layout.groups.iter().filter(|g| g.role != Role::Other).flat_map(|g| g.columns.clone()).collect();
-    out.unused = (0..table.columns.len()).filter(|i| !used.contains(i)).map(|i| table.columns[i].name.clone()).collect();
-    if out.position.is_none() && out.attitude.is_none() && out.angle.is_none() && out.velocity.is_none() && out.omega.is_none() {
+    let used: Vec<usize> =
+        layout.groups.iter().filter(|g| g.role != Role::Other).flat_map(|g| g.columns.clone()).collect();
+    out.unused =
+        (0..table.columns.len()).filter(|i| !used.contains(i)).map(|i| table.columns[i].name.clone()).collect();
+    if out.position.is_none()
+        && out.attitude.is_none()
+        && out.angle.is_none()
+        && out.velocity.is_none()
+        && out.omega.is_none()
+    {
         return Err(nothing_moves(table));
     }
     Ok(out)
@@ -171,7 +180,8 @@ fn unnamed_time(out: &Trajectory, table: &Table, layout: &Layout) -> (f64, Strin
     steps.sort_by(f64::total_cmp);
     let step = steps[steps.len() / 2];
     if step >= 1.0 {
-        let of_position = out.position.as_ref().zip(out.velocity.as_ref()).and_then(|(x, v)| rate_ratio(&out.time, x, v));
+        let of_position =
+            out.position.as_ref().zip(out.velocity.as_ref()).and_then(|(x, v)| rate_ratio(&out.time, x, v));
         let of_angle = out.angle.as_ref().zip(out.angle_rate.as_ref()).and_then(|(x, v)| {
             let flat = |s: &Scalars| Vectors {
                 values: s.values.iter().map(|x| Vector3::new(*x, 0.0, 0.0)).collect(),
@@ -338,7 +348,10 @@ fn decide(
     tied.sort_by_key(|s| (s.reading.inverse, named.is_some_and(|n| n != s.frame), s.frame == OmegaFrame::Body));
     if scored.iter().all(|s| s.turning < 1e-12) {
         "the body does not turn".clone_into(why);
-        let reading = Scored { frame: if named == Some(OmegaFrame::Body) { OmegaFrame::Body } else { OmegaFrame::World }, ..usual(&scored) };
+        let reading = Scored {
+            frame: if named == Some(OmegaFrame::Body) { OmegaFrame::Body } else { OmegaFrame::World },
+            ..usual(&scored)
+        };
         out.omega_frame = reading.frame;
         return reading.reading;
     }
@@ -350,11 +363,15 @@ fn decide(
     let other = scored.iter().find(|s| s.misfit >= CLEARLY * best).map(|s| s.misfit);
     *why = match other {
         _ if unexplained => format!("no reading satisfies q' = q omega / 2 (best misses {best:.1e} of the turning)"),
-        Some(next) => format!("q' = q omega / 2 to {:.1e} of the turning, the next reading to {next:.1e}", chosen.misfit),
+        Some(next) => {
+            format!("q' = q omega / 2 to {:.1e} of the turning, the next reading to {next:.1e}", chosen.misfit)
+        }
         None => format!("q' = q omega / 2 to {:.1e} of the turning", chosen.misfit),
     };
     let differs = |s: &&Scored| {
-        s.reading != chosen.reading || s.omega_scale != chosen.omega_scale || (s.frame != chosen.frame && chosen.frames_differ > chosen.misfit.max(1e-6))
+        s.reading != chosen.reading
+            || s.omega_scale != chosen.omega_scale
+            || (s.frame != chosen.frame && chosen.frames_differ > chosen.misfit.max(1e-6))
     };
     let open: Vec<&Scored> = tied.iter().filter(differs).collect();
     if !unexplained && !open.is_empty() {
@@ -394,8 +411,7 @@ fn floor(rounding: Rounding) -> f64 {
 
 /// An attitude without an angular velocity: the usual reading, and a tie where the names leave another open.
 fn undecided(out: &mut Trajectory, table: &Table, attitude: &Group, layout: &Layout, why: &mut String) -> Reading {
-    let largest =
-        attitude.columns.iter().flat_map(|i| &table.columns[*i].values).fold(0.0_f64, |m, x| m.max(x.abs()));
+    let largest = attitude.columns.iter().flat_map(|i| &table.columns[*i].values).fold(0.0_f64, |m, x| m.max(x.abs()));
     let mut all = attitude::readings(attitude, largest);
     all.retain(|r| attitude.order_is_open || r.notation != Notation::Xyzw);
     let tum = table.dialect.names.is_empty() && table.dialect.cells == 8 && layout.get(Role::Position).is_some();

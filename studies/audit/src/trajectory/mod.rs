@@ -203,7 +203,9 @@ pub fn of_table(table: &Table, choices: &Choices) -> Result<Trajectory, Error> {
             layout = numbers;
         } else if let Some(time) = numbers.get(Role::Time) {
             let free = !layout.groups.iter().any(|g| g.columns.contains(&time.columns[0]));
-            layout.groups.extend(free.then(|| Group { reason: "the first column that always grows".to_owned(), ..time.clone() }));
+            layout.groups.extend(
+                free.then(|| Group { reason: "the first column that always grows".to_owned(), ..time.clone() }),
+            );
         }
     }
     apply_units(&mut layout, table, choices)?;
@@ -219,12 +221,14 @@ fn apply_units(layout: &mut Layout, table: &Table, choices: &Choices) -> Result<
         }
     }
     for (target, text) in &choices.units {
-        let unit = names::unit(text).ok_or_else(|| Error::flag("--unit", format!("'{text}' is no unit that is known; as deg/s, ms, mm, ft")))?;
+        let unit = names::unit(text)
+            .ok_or_else(|| Error::flag("--unit", format!("'{text}' is no unit that is known; as deg/s, ms, mm, ft")))?;
         let is_target = |g: &&mut Group| {
             role_id(g.role) == target.as_str() || g.columns.iter().any(|i| table.columns[*i].name == *target)
         };
         let group = layout.groups.iter_mut().find(is_target).ok_or_else(|| {
-            let message = format!("'{target}' is no column and no quantity of {}; give COLUMN=UNIT", table.path.display());
+            let message =
+                format!("'{target}' is no column and no quantity of {}; give COLUMN=UNIT", table.path.display());
             Error::flag("--unit", message)
         })?;
         group.unit = Some(unit);

@@ -63,7 +63,8 @@ const ORDER: [Role; 15] = [
 
 /// The layout that the names of the columns say.
 pub(crate) fn by_names(table: &Table) -> Layout {
-    let known: Vec<Option<Known>> = table.columns.iter().map(|c| if c.is_numeric() { recognise(&c.name) } else { None }).collect();
+    let known: Vec<Option<Known>> =
+        table.columns.iter().map(|c| if c.is_numeric() { recognise(&c.name) } else { None }).collect();
     let mut layout = Layout::default();
     // Three components before two, two before one: `x y z` is a position even where `x` alone could be one.
     for wanted in [9, 4, 3, 2, 1] {
@@ -133,7 +134,11 @@ fn group(table: &Table, known: &[Option<Known>], role: Role, columns: &[usize], 
             (&["0", "1", "2", "3"], &[], true),
             (&["1", "2", "3", "4"], &[], true),
         ],
-        (_, 3) => &[(&["x", "y", "z"], &[0, 1, 2], false), (&["1", "2", "3"], &[0, 1, 2], false), (&["0", "1", "2"], &[0, 1, 2], false)],
+        (_, 3) => &[
+            (&["x", "y", "z"], &[0, 1, 2], false),
+            (&["1", "2", "3"], &[0, 1, 2], false),
+            (&["0", "1", "2"], &[0, 1, 2], false),
+        ],
         (_, 2) => &[
             (&["x", "y"], &[0, 1], false),
             (&["x", "z"], &[0, 2], false),
@@ -141,7 +146,13 @@ fn group(table: &Table, known: &[Option<Known>], role: Role, columns: &[usize], 
             (&["0", "1"], &[0, 1], false),
             (&["1", "2"], &[0, 1], false),
         ],
-        _ => &[(&[""], &[0], false), (&["x"], &[0], false), (&["y"], &[1], false), (&["z"], &[2], false), (&["0"], &[0], false)],
+        _ => &[
+            (&[""], &[0], false),
+            (&["x"], &[0], false),
+            (&["y"], &[1], false),
+            (&["z"], &[2], false),
+            (&["0"], &[0], false),
+        ],
     };
     sets.iter().find_map(|(labels, axes, order_is_open)| {
         let place = |l: &str| columns.iter().copied().find(|i| label(*i) == l);
@@ -187,7 +198,15 @@ pub(crate) fn by_numbers(table: &Table) -> Layout {
 
 fn plain(role: Role, columns: Vec<usize>, reason: &str) -> Group {
     let axes = (0..columns.len()).collect();
-    Group { role, columns, axes, order_is_open: role == Role::Quaternion, frame: None, unit: None, reason: reason.to_owned() }
+    Group {
+        role,
+        columns,
+        axes,
+        order_is_open: role == Role::Quaternion,
+        frame: None,
+        unit: None,
+        reason: reason.to_owned(),
+    }
 }
 
 fn place_rest(layout: &mut Layout, columns: &[Column], time: usize, rest: &[usize]) {
