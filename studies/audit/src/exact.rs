@@ -22,6 +22,9 @@ pub struct Exact {
     pub source: Vec<&'static str>,
 }
 
+/// Position and velocity at a time.
+type PointAt = Box<dyn Fn(f64) -> [Vector3<f64>; 2]>;
+
 /// The exact motion, shifted: the pose at t - `pose_late`, rates at t.
 pub fn exact(subject: &Subject, t: &Trajectory, pose_late: f64) -> Exact {
     let mut out = Exact::default();
@@ -82,7 +85,7 @@ fn point(
     v0: Vector3<f64>,
     times: &[[f64; 2]],
 ) -> Option<Vec<[Vector3<f64>; 2]>> {
-    let at: Box<dyn Fn(f64) -> [Vector3<f64>; 2]> = match (force, ball) {
+    let at: PointAt = match (force, ball) {
         (Force::Constant(g), Some(ball)) => Box::new(move |t| bounced(ball, g, x0, v0, t)),
         (Force::None, _) if c == 0.0 => Box::new(move |t| [x0 + v0 * t, v0]),
         (Force::None, _) => Box::new(move |t| [x0 + v0 * (-(-c * t).exp_m1() / c), v0 * (-c * t).exp()]),
@@ -106,12 +109,7 @@ fn point(
 }
 
 /// An ellipse from one state: its plane and pericentre, then Kepler's equation in double-double.
-fn orbit(
-    mu: f64,
-    centre: Vector3<f64>,
-    x0: Vector3<f64>,
-    v0: Vector3<f64>,
-) -> Option<Box<dyn Fn(f64) -> [Vector3<f64>; 2]>> {
+fn orbit(mu: f64, centre: Vector3<f64>, x0: Vector3<f64>, v0: Vector3<f64>) -> Option<PointAt> {
     let r = x0 - centre;
     let spin = r.cross(&v0);
     let semi_major = 1.0 / (2.0 / r.norm() - v0.norm_squared() / mu);

@@ -92,9 +92,12 @@ fn main() -> ExitCode {
     }
 }
 
+/// A report as text.
+type Form = fn(&Report) -> String;
+
 fn perform(flags: &Flags) -> Result<u8, Error> {
     let report = audit::run(&args(flags)?)?;
-    let forms: [(&Option<PathBuf>, fn(&Report) -> String); 3] =
+    let forms: [(&Option<PathBuf>, Form); 3] =
         [(&flags.json, Report::json), (&flags.markdown, Report::markdown), (&flags.junit, Report::junit)];
     let mut printed = false;
     for (path, form) in forms {

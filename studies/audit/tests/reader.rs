@@ -154,7 +154,7 @@ fn broken_files_are_refused_with_their_place() {
         ("cut", "t,x,y\n0,1,2\n1,4,5\n2,7".to_owned(), "4:2: the row has 2 cells"),
         ("text", "t,x,y\n0,1,2\n1,left,5\n".to_owned(), "3:2: 'left' in 'x' is no number"),
         ("empty cell", "t,x,y\n0,1,2\n1,,5\n".to_owned(), "3:2: the cell of 'x' is empty"),
-        ("long line", format!("t,x\n0,1\n{long}\n"), "1:1: the line is longer"),
+        ("long line", format!("t,x\n0,1\n{long}\n"), "3:1: the line is longer"),
         ("no names", "alpha_1,beta_2\n0,1\n1,2\n".to_owned(), "no position, attitude or angle"),
     ];
     for (name, text, expected) in cases {

@@ -21,7 +21,7 @@ fn clamp(t: &Trajectory, v: &Vectors, what: &'static str, unit: &'static str, id
     let finding = |value: f64, evidence: String| {
         Finding::new(Check::Conservation, id, Verdict::Fault, (format!("limit of the {what}"), value, unit), evidence)
     };
-    let norms: Vec<f64> = v.values.iter().map(|v| v.norm()).collect();
+    let norms: Vec<f64> = v.values.iter().map(Vector3::norm).collect();
     // A jump down in the first step that nothing later comes near: the start was beyond the limit.
     let fall = |i: usize| (norms[i] - norms[i + 1]) / norms[i].max(f64::MIN_POSITIVE);
     let later = (1..norms.len().min(200) - 1).map(|i| fall(i).abs()).fold(0.0, f64::max);

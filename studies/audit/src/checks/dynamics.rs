@@ -187,7 +187,7 @@ fn rotation(
         let quantity = ("factor of the gyroscopic term", factor, "");
         if factor.abs() < 0.2 && fit.errors[0] < 0.1 {
             found.push(finding("gyroscopic-term-missing", Verdict::Fault, quantity, evidence));
-        } else if (factor - 1.0).abs() > 0.1 + SURELY * fit.errors[0] && turned * h < 0.3 {
+        } else if turned * h < 0.3 && ((factor - 1.0).abs() > 0.1 + SURELY * fit.errors[0] || fit.explained < 0.98) {
             let evidence = format!("{evidence}: another inertia, or a wrong term");
             found.push(finding("gyroscopic-term-wrong", Verdict::Fault, quantity, evidence));
         } else {
@@ -211,7 +211,7 @@ fn rotation(
 fn spin(t: &Trajectory, clock: &Clock, known: f64) -> Vec<Finding> {
     let Some(omega) = &t.omega else { return vec![] };
     let w = &omega.values;
-    let straight = w.iter().all(|x| x.cross(&w[0]).norm() <= 1e-6 * w[0].norm_squared());
+    let straight = w.iter().all(|x| x.cross(&w[0]).norm() <= 1e-4 * w[0].norm_squared());
     let pairs = (0..t.rows() - 1).filter(|i| clock.is_regular(*i));
     let row = |i: usize| {
         let mean = (w[i] + w[i + 1]) / 2.0;

@@ -66,10 +66,13 @@ pub fn check(t: &Trajectory) -> (Clock, Vec<Finding>) {
         let evidence = format!("{lost} row(s) are missing, {}", rows(&gaps));
         found.push(finding("gap", Verdict::Fault, lost, "rows", evidence));
     }
-    if !uneven.is_empty() {
+    let single = single_sum(&t.time);
+    if let Some(h) = single {
+        found.push(summed(&t.time, h));
+    } else if !uneven.is_empty() {
         found.push(unevenness(t, &steps, interval, &uneven));
     }
-    if back.is_empty() && repeated.is_empty() && gaps.is_empty() && uneven.is_empty() {
+    if single.is_none() && back.is_empty() && repeated.is_empty() && gaps.is_empty() && uneven.is_empty() {
         let evidence = format!("{} rows, {:.9} s apart, even to {:.1e} s", t.rows(), interval, tolerance);
         found.push(finding("even", Verdict::Pass, interval, "s", evidence));
     }
@@ -88,12 +91,6 @@ fn mean_interval(forward: &[f64]) -> f64 {
 
 fn unevenness(t: &Trajectory, steps: &[f64], interval: f64, uneven: &[usize]) -> Finding {
     let rms = (uneven.iter().map(|i| (steps[*i] - interval).powi(2)).sum::<f64>() / steps.len() as f64).sqrt();
-    if let Some(h) = single_sum(&t.time) {
-        let drift = (t.time[t.rows() - 1] - t.time[0]) - h * (t.rows() - 1) as f64;
-        let evidence =
-            format!("times are the f32 sum of {h}: after {} rows the clock is off by {drift:.2e} s", t.rows());
-        return finding("f32-clock", Verdict::Fault, drift, "s", evidence);
-    }
     if single_valued(&t.time) {
         let evidence = format!("times are numbers of single precision, {rms:.1e} s rms off an even clock");
         return finding("f32-clock", Verdict::Fault, rms, "s", evidence);
@@ -103,6 +100,14 @@ fn unevenness(t: &Trajectory, steps: &[f64], interval: f64, uneven: &[usize]) ->
         format!("{} of {} intervals differ from {interval:.9} s, rms {rms:.2e} s", uneven.len(), steps.len());
     let jitters = share > 0.05 || rms > 0.01 * interval;
     finding("jitter", if jitters { Verdict::Fault } else { Verdict::Note }, rms, "s", evidence)
+}
+
+/// A clock that is a sum in single precision, with the step that was added.
+fn summed(time: &[f64], h: f64) -> Finding {
+    let rows = time.len() - 1;
+    let drift = (time[rows] - time[0]) - h * rows as f64;
+    let evidence = format!("times are the f32 sum of {h}: after {rows} rows the clock is off by {drift:.2e} s");
+    finding("f32-clock", Verdict::Fault, drift, "s", evidence)
 }
 
 /// Whether the times are numbers of single precision, and not all of them short.

@@ -3,7 +3,7 @@
 use integrator::{Rotation, State};
 use nalgebra::{Vector3, Vector4};
 
-use super::rotation::{Bare, munthe_kaas};
+use super::rotation::bare::{Bare, munthe_kaas};
 use crate::physics::Moment;
 
 /// Largest turn in a step, rad: the error of a step is below (1/256)^5, that of a run of 10^4 rad below 1e-9.

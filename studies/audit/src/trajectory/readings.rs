@@ -101,6 +101,9 @@ struct Pair {
     h: f64,
 }
 
+/// How the attitude turned, and how the angular velocity says it did.
+type Turned = (Vector3<f64>, Vector3<f64>);
+
 /// rms of the turning in a step less that by the mean angular velocity (with the first commutator of Magnus' series, which
 /// leaves an error of h^3), relative to the rms of the larger of the two; the same after the best factor; the factor.
 fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 4] {
@@ -120,7 +123,7 @@ fn residuals(steps: &[Pair], frame: OmegaFrame, scale: f64) -> [f64; 4] {
     if vectors.len() * 2 < steps.len() {
         return [f64::INFINITY, f64::INFINITY, 1.0, 1.0];
     }
-    let sum = |f: &dyn Fn(&(Vector3<f64>, Vector3<f64>)) -> f64| vectors.iter().map(f).sum::<f64>();
+    let sum = |f: &dyn Fn(&Turned) -> f64| vectors.iter().map(f).sum::<f64>();
     let (turned, told) = (sum(&|(a, _)| a.norm_squared()), sum(&|(_, b)| b.norm_squared()));
     let size = turned.max(told).max(f64::MIN_POSITIVE);
     let missed = sum(&|(a, b)| (a - b).norm_squared());
