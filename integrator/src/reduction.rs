@@ -53,7 +53,7 @@ fn of_large(x: f64) -> (u64, DoubleDouble) {
     let fraction = product.iter().fold(DoubleDouble::ZERO, |sum, &w| {
         let halves = [(w & 0xffff_ffff) as f64, (w >> 32) as f64 * 4_294_967_296.0];
         let scaled = halves.iter().fold(sum, |sum, &half| sum.add_accurate(DoubleDouble::from_f64(half)));
-        DoubleDouble { 0: scaled.0 / 18_446_744_073_709_551_616.0, 1: scaled.1 / 18_446_744_073_709_551_616.0 }
+        DoubleDouble(scaled.0 / 18_446_744_073_709_551_616.0, scaled.1 / 18_446_744_073_709_551_616.0)
     });
     let left = fraction * DoubleDouble::PI * DoubleDouble::from_f64(0.5);
     let negative = above != (x < 0.0);

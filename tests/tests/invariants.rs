@@ -29,23 +29,23 @@ fn field_energy(scene: &dyn AnyScene, seen: &Observation) -> fx128 {
 const FAULTS: [(&str, &str, Fault); 6] = [
     ("charged-particle", "the potential has the wrong sign", |scene, seen, e| {
         if e.balance == Balance::Energy {
-            e.value[0] = e.value[0] + field_energy(scene, seen) * fx128::lit(2.0);
+            e.value[0] += field_energy(scene, seen) * fx128::lit(2.0);
         }
     }),
     ("box-tumbling", "the kinetic energy of the flight is 1 % off", |scene, seen, e| {
         if e.balance == Balance::Energy {
             let square = seen.vector(Quantity::Velocity).iter().fold(fx128::ZERO, |sum, &v| sum + v * v);
-            e.value[0] = e.value[0] + square * fx128::lit(0.005 * parameter(scene, "mass")[0]);
+            e.value[0] += square * fx128::lit(0.005 * parameter(scene, "mass")[0]);
         }
     }),
-    ("kepler", "all of the energy is 1 % off", |_, _, e| e.value.iter_mut().for_each(|x| *x = *x * fx128::lit(1.01))),
+    ("kepler", "all of the energy is 1 % off", |_, _, e| e.value.iter_mut().for_each(|x| *x *= fx128::lit(1.01))),
     ("linear-drag", "what is lost is said to be conserved", |_, _, e| e.conserved = true),
     ("damped-oscillator", "the energy is 1e-6 off", |_, _, e| {
-        e.value.iter_mut().for_each(|x| *x = *x * fx128::lit(1.0 + 1e-6))
+        e.value.iter_mut().for_each(|x| *x *= fx128::lit(1.0 + 1e-6));
     }),
     ("spring-chain", "the momentum is that of twice the mass", |_, _, e| {
         if e.balance == Balance::Momentum {
-            e.value.iter_mut().for_each(|x| *x = *x * fx128::lit(2.0));
+            e.value.iter_mut().for_each(|x| *x *= fx128::lit(2.0));
         }
     }),
 ];

@@ -204,7 +204,7 @@ fn propagate<Q: Space<Scalar = fx128>>(
         let k4 = slope(to, plus(e, k3, h));
         let inner = plus(plus(e, k1, h / lit(6.0)), k4, h / lit(6.0));
         e = plus(plus(inner, k2, h / lit(3.0)), k3, h / lit(3.0));
-        if (i + 2 * stride) % every == 0 {
+        if (i + 2 * stride).is_multiple_of(every) {
             seen.push(e);
         }
     }

@@ -146,5 +146,5 @@ fn named<A: Copy>(kind: &'static str, all: &[A], id: impl Fn(A) -> &'static str,
 }
 
 fn number<N: std::str::FromStr>(key: &str, text: &str) -> Result<N, Error> {
-    text.parse().map_err(|_| Error::plan(key, &format!("'{text}' is not of the right form")))
+    text.parse().map_err(|_| Error::plan(key, format!("'{text}' is not of the right form")))
 }

@@ -99,7 +99,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                     format!("a{}", i + 2),
                     Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { a, .. } = s {
-                            a[i] *= x
+                            a[i] *= x;
                         }
                     }),
                 );
@@ -107,7 +107,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                     format!("c{}", i + 2),
                     Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { c, .. } = s {
-                            c[i] *= x
+                            c[i] *= x;
                         }
                     }),
                 );
@@ -117,7 +117,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                     format!("b{}", i + 1),
                     Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Rk4 { b, .. } = s {
-                            b[i] *= x
+                            b[i] *= x;
                         }
                     }),
                 );
@@ -129,7 +129,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                     format!("kick {i}"),
                     Box::new(move |s: &mut Steps, x: f64| {
                         if let Steps::Kdk { kicks, .. } = s {
-                            kicks[i] *= x
+                            kicks[i] *= x;
                         }
                     }),
                 );
@@ -138,7 +138,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                 "drift".to_owned(),
                 Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Kdk { drift, .. } = s {
-                        *drift *= x
+                        *drift *= x;
                     }
                 }),
             );
@@ -148,7 +148,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                 "theta".to_owned(),
                 Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Theta { theta, .. } = s {
-                        *theta *= x
+                        *theta *= x;
                     }
                 }),
             );
@@ -156,7 +156,7 @@ fn coefficients(of: Steps) -> Vec<(String, Change)> {
                 "time".to_owned(),
                 Box::new(|s: &mut Steps, x: f64| {
                     if let Steps::Theta { time, .. } = s {
-                        *time *= x
+                        *time *= x;
                     }
                 }),
             );

@@ -204,8 +204,8 @@ pub fn all(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
 /// The scene of that name, of whatever preset.
 fn own<S: Scene + Default + Clone>(scenes: &[Box<dyn AnyScene>], base: &str) -> S {
     let of_base = scenes.iter().filter(|scene| scene.id().split('/').next() == Some(base));
-    let as_own = |scene: &Box<dyn AnyScene>| (scene.scene() as &dyn Any).downcast_ref::<S>().cloned();
-    of_base.filter_map(as_own).next().unwrap_or_default()
+    let mut own = of_base.filter_map(|scene| (scene.scene() as &dyn Any).downcast_ref::<S>());
+    own.next().cloned().unwrap_or_default()
 }
 
 /// Whether omega x I omega vanishes along the exact motion of a body: nothing is lost without it.

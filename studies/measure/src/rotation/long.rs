@@ -216,5 +216,5 @@ fn turning(scene: &dyn AnyScene, end_s: f64) -> (f64, f64) {
     };
     let all: Vec<nalgebra::Vector3<f64>> = (0..=64).map(omega).collect();
     let turned = all.windows(2).map(|w| w[0].cross(&w[1]).norm()).sum();
-    (turned, all.iter().map(|w| w.norm()).fold(0.0, f64::max))
+    (turned, all.iter().map(nalgebra::Matrix::norm).fold(0.0, f64::max))
 }
