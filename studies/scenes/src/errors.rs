@@ -11,8 +11,7 @@ use crate::observation::{Observation, Quantity};
 use crate::run::{Outcome, Precision, Run, Trajectory};
 use crate::scheme::Scheme;
 
-/// Times at which a run is compared with the exact motion, evenly spaced; also the end.
-pub const CHECKPOINTS: u64 = 32;
+pub use crate::run::CHECKPOINTS;
 
 /// The exact motion of a scene at evenly spaced times of every run, k T / n for k = 0..n.
 pub struct Truth {

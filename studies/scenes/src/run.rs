@@ -92,6 +92,9 @@ pub fn method_from_id(id: &str) -> Result<MethodId, Error> {
     MethodId::ALL.iter().copied().find(|m| m.id() == id).ok_or_else(|| Error::unknown("method", id, known()))
 }
 
+/// Times at which a run is compared with the exact motion, evenly spaced; also the end.
+pub const CHECKPOINTS: u64 = 32;
+
 /// What to run on a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {

@@ -23,9 +23,9 @@ use faer::fx128;
 use integrator::methods::MethodId;
 use integrator::{Real, Single, Space, State, Vector};
 
-use crate::errors::CHECKPOINTS;
 use crate::motion::Motion;
 use crate::observation::Quantity;
+use crate::run::CHECKPOINTS;
 
 /// What theory says of the leading error of one method in one quantity, in the quantity's unit / s^order.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 use reports::Claim;
 
 use super::Row;
-use super::orders::{Measure, OrderRow};
+use super::order_row::{Measure, OrderRow};
 use crate::claim::{Evidence, claim, largest};
 use crate::order::{Sample, Verdict};
 

@@ -3,11 +3,13 @@
 mod envelope;
 mod figures;
 mod limit;
+mod order_row;
 mod orders;
 mod rounding;
 
 pub use limit::{Limit, judge, limit};
-pub use orders::{Measure, OrderRow, orders, tolerance};
+pub use order_row::{Measure, OrderRow};
+pub use orders::{orders, tolerance};
 
 use integrator::methods::MethodId;
 use reports::{Claim, Figure};

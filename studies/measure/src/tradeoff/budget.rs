@@ -1,6 +1,6 @@
 //! Advice for a budget: the smallest error for so much time per simulated second.
 
-use super::advice::{Asked, Entry, MOST_FRAMES, Pick, Steady, TIMED_STEPS, task, timed};
+use super::asked::{Asked, Entry, MOST_FRAMES, Pick, Steady, TIMED_STEPS, task, timed};
 use super::candidate::Candidate;
 use super::clock::{Care, Cost, Task, costs};
 use super::limit::limit;

@@ -4,7 +4,7 @@ use integrator::methods::MethodId;
 use reports::Table;
 use serde::Serialize;
 
-use super::tables::{label, runs};
+use super::cells::{label, runs};
 use super::{Part, Row};
 use crate::error::Error;
 use crate::study::{Derived, distinct, short};

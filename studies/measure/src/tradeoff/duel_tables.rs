@@ -6,8 +6,8 @@ use reports::Table;
 use serde::Serialize;
 
 use super::candidate::Candidate;
+use super::cells::charge_name;
 use super::iso::{LEVELS, Offer};
-use super::tables::charge_name;
 use super::verdict::{Between, Duel, Factor, duels};
 use super::{Charge, Row};
 use crate::error::Error;

@@ -4,8 +4,10 @@
 //! and no claim rests on them.
 
 pub mod advice;
+mod asked;
 mod budget;
 pub mod candidate;
+mod cells;
 mod claims;
 pub mod clock;
 mod cost_tables;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use reports::Table;
 
-use super::advice::{Asked, Entry, Pick};
+use super::asked::{Asked, Entry, Pick};
 use super::budget::over_budget;
 use super::quantity::Of;
 use super::search::{Search, Tried, watched};

@@ -3,7 +3,7 @@
 use reports::Table;
 use serde::Serialize;
 
-use super::candidate::Candidate;
+use super::cells::{charge_name, label, runs};
 use super::front::front;
 use super::iso::{LEVELS, Price, prices};
 use super::{Charge, Part, Row, cost_tables, duel_tables, peers, ucurve};
@@ -25,21 +25,6 @@ pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
     tables.extend(cost_tables::all(rows)?);
     tables.extend(peers::table(rows)?);
     Ok(tables)
-}
-
-pub(super) fn runs(rows: &[Row]) -> Vec<&Row> {
-    rows.iter().filter(|row| row.part == Part::Run).collect()
-}
-
-pub(super) fn label(method: &str) -> String {
-    Candidate::from_id(method).map_or_else(|| method.to_owned(), Candidate::label)
-}
-
-pub(super) fn charge_name(charge: Charge) -> &'static str {
-    match charge {
-        Charge::Evaluations => "evaluations",
-        Charge::Time => "time",
-    }
 }
 
 #[derive(Serialize)]
