@@ -9,7 +9,7 @@ use integrator::rigid_body::Torque;
 use integrator::{Real, Single, State, Vector};
 use nalgebra::{SVector, Vector3};
 use scenes::any::AnyScene;
-use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
+use scenes::erased::{AnyMotion, BodyMotion, FlatScene};
 use scenes::invariants::{Balance, Entry};
 use scenes::observation::{Observation, Quantity, Value};
 
@@ -171,21 +171,20 @@ fn rate(scene: &dyn AnyScene, account: Account<'_>, entry: usize, balance: Balan
 fn rates(scene: &dyn AnyScene, balance: Balance, t: f64) -> Vec<f64> {
     let m = mass(scene);
     match scene.any_motion() {
-        AnyMotion::One(motion) => flat(scene, balance, motion, t, m),
-        AnyMotion::Two(motion) => flat(scene, balance, motion, t, m),
-        AnyMotion::Three(motion) => flat(scene, balance, motion, t, m),
-        AnyMotion::Sixteen(motion) => flat(scene, balance, motion, t, m),
+        AnyMotion::Few(erased) => flat(scene, balance, &erased, t, m),
+        AnyMotion::Many(erased) => flat(scene, balance, &erased, t, m),
         AnyMotion::Pivoted(_) => vec![f64::NAN],
         AnyMotion::Flying(motion) => flying(balance, motion, t, m),
     }
 }
 
-fn flat<const N: usize>(scene: &dyn AnyScene, balance: Balance, motion: FlatMotion<'_, N>, t: f64, m: f64) -> Vec<f64> {
-    let s: State<SVector<f64, N>> = motion.exact(t);
-    let force: Vec<f64> = motion.rate(t, &s).iter().map(|a| a * m).collect();
+fn flat<const M: usize>(scene: &dyn AnyScene, balance: Balance, erased: &FlatScene<'_, M>, t: f64, m: f64) -> Vec<f64> {
+    let motion = erased.motion();
+    let s: State<SVector<f64, M>> = motion.exact(t);
+    let force: Vec<f64> = motion.rate(t, &s).iter().take(erased.dimension).map(|a| a * m).collect();
     if balance != Balance::Energy {
         // The sixteen masses have one momentum.
-        return if N == 16 { vec![force.iter().sum()] } else { force };
+        return if erased.dimension == 16 { vec![force.iter().sum()] } else { force };
     }
     let speed = s.v.norm();
     vec![match base(scene) {

@@ -86,7 +86,7 @@ fn draw(random: &mut Random, id: &str, names: &[&str]) -> Box<dyn AnyScene> {
 
 /// Draws per scene: a few in the suite, as many as wanted by the environment.
 fn draws() -> usize {
-    std::env::var("VERIFICATION_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(4)
+    std::env::var("VERIFICATION_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(2)
 }
 
 // Fails if: an error is the largest of 64 samples; the polynomials of the exact motion are off by a per cent of the level;
@@ -116,7 +116,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
                 scene.scene().parameters().iter().map(|p| format!("{}={}", p.name, p.value)).collect();
             let case = format!("{id} {set:?} {} {precision:?} error {error} over {end_s} s", candidate.id());
             match search(&need, candidate, precision) {
-                Search::Found(tried) if tried.steps <= 1 << 17 => {
+                Search::Found(tried) if tried.steps <= 1 << 15 => {
                     found += 1;
                     let all = measured(tried.steps);
                     assert!(all <= error, "{case}: {tried:?}, over all steps {all}");
@@ -140,7 +140,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
         }
     }
     println!("{found} found, {refused} refused");
-    assert!(found >= 3 * refused, "{found} found, {refused} refused");
+    assert!(found > 0 && found >= 3 * refused, "{found} found, {refused} refused");
 }
 
 fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -> Selection {
@@ -204,6 +204,21 @@ fn the_error_at_a_pericentre_counts() {
         assert!(all <= error && (tried.error.expect("found") / all - 1.0).abs() <= 2e-3, "{tried:?} {all}");
         let fewer = brute(orbit.as_ref(), candidate, Precision::F64, end_s, tried.steps / 64 * 63 / 2 * 2 - 2);
         assert!(fewer > error, "{tried:?}: {fewer}");
+    }
+}
+
+// Implicit Euler's energy error after two steps is smaller than after eight: the doublings go on to where it falls for good.
+// Fails if: an error that grows with the first doublings is taken for rounding.
+#[test]
+fn a_lucky_coarse_run_is_no_rounding_floor() {
+    let top = scene("heavy-top", &[]);
+    let end_s = top.scene().info().horizon_s;
+    let of = Of::Balance(Balance::Energy);
+    let truth = Truth::new(top.as_ref(), end_s, 64).at_every_step(of, 0.05);
+    let need = Need { scene: top.as_ref(), truth: &truth, error: 0.05, end_s, unit: 2 };
+    for candidate in candidates(top.as_ref(), &[MethodId::ImplicitEuler]) {
+        let found = search(&need, candidate, Precision::F64);
+        assert!(matches!(found, Search::Found(_)), "{}: {found:?}", candidate.id());
     }
 }
 

@@ -20,6 +20,7 @@ impl ExplicitEuler {
         symplectic: Some(false),
         reversible: Some(false),
         linear: Some(LinearTheory::RungeKutta(Rational::polynomial(&[1.0, 1.0]))),
+        worked_out: true,
         formula: "q1 = q0 + h w(q0, v0), v1 = v0 + h a(t0, q0, v0)",
         latex: &[r"q_1 = q_0 + h\,v_0,\quad v_1 = v_0 + h\,a(t_0, q_0, v_0)"],
         source: "L. Euler, Institutionum calculi integralis I (1768), section 650",

@@ -29,6 +29,9 @@ pub struct Facts {
     pub conserves: &'static [Conserved],
     /// What it does to linear equations.
     pub linear: Option<LinearTheory>,
+    /// Whether the theory of the scenes has been worked out for it. Without it a scene promises nothing of its errors, and
+    /// only an order below `order` is a fault.
+    pub worked_out: bool,
     /// The step from (t0, q0, v0) to (t1, q1, v1) in one line of plain text.
     pub formula: &'static str,
     /// The step in LaTeX, a formula a line; a is the rate of v, w the velocity of q.
@@ -51,6 +54,7 @@ impl Facts {
         reversible: None,
         conserves: &[],
         linear: None,
+        worked_out: false,
         formula: "",
         latex: &[],
         source: "",

@@ -28,6 +28,7 @@ impl FreeSplitting {
         symplectic: Some(true),
         reversible: Some(true),
         conserves: &[Conserved::Momentum],
+        worked_out: true,
         formula: "kick h/2, X(h/2) Y(h/2) Z(h) Y(h/2) X(h/2), kick h/2; X(h): turn by h l_x / I_x about the body's x axis",
         latex: &[
             r"X_{h/2}\circ Y_{h/2}\circ Z_h\circ Y_{h/2}\circ X_{h/2}\quad\text{between two kicks}\quad l\to l + \tfrac{h}{2}\,\tau",

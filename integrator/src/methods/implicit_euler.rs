@@ -21,6 +21,7 @@ impl ImplicitEuler {
         symplectic: Some(false),
         reversible: Some(false),
         linear: Some(LinearTheory::RungeKutta(Rational { numerator: &[1.0], denominator: &[1.0, -1.0] })),
+        worked_out: true,
         formula: "v1 = v0 + h a(t1, q1, v1), q1 = q0 + h w(q1, v1)",
         latex: &[r"v_1 = v_0 + h\,a(t_1, q_1, v_1),\quad q_1 = q_0 + h\,v_1"],
         source: "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996), IV.1 (1.10)",

@@ -25,6 +25,7 @@ impl ImplicitGyroscopic {
         order: 1,
         evaluations: Some(1),
         reversible: Some(false),
+        worked_out: true,
         formula: "omega1 = u - f'(u)^-1 f(u), f(w) = I (w - u) + h w x I w, u = omega0 + h I^-1 tau0",
         latex: &[
             r"u = \omega_0 + h\,I^{-1}\tau_0,\quad f(w) = I\,(w - u) + h\,w\times I w",

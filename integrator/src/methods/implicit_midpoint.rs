@@ -22,6 +22,7 @@ impl ImplicitMidpoint {
         symplectic: Some(true),
         reversible: Some(true),
         linear: Some(LinearTheory::RungeKutta(Rational { numerator: &[1.0, 0.5], denominator: &[1.0, -0.5] })),
+        worked_out: true,
         formula: "vm = (v0 + v1) / 2, qm = q0 + h w(qm, vm) / 2, v1 = v0 + h a(t0 + h/2, qm, vm), q1 = q0 + h w(qm, vm)",
         latex: &[
             r"v_m = \tfrac12\,(v_0 + v_1),\quad q_m = q_0 + \tfrac{h}{2}\,v_m",

@@ -116,6 +116,9 @@ pub trait Visitor<T: Real, M: Model<T>> {
 macro_rules! names {
     ($(#[$doc:meta])* $list:ident: $($step:ident),* $(,)?) => {
         $(#[$doc])*
+        ///
+        /// A match elsewhere has an arm for names that it does not know: a new one then compiles without it.
+        #[non_exhaustive]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum $list {
             $(
@@ -165,6 +168,16 @@ macro_rules! general_list {
             /// Whether a step solves a system of equations, and so can fail to.
             pub fn is_implicit(self) -> bool {
                 self.facts().implicit
+            }
+
+            /// Whether it is one of the core, compiled wherever a method is timed.
+            #[allow(clippy::match_same_arms, reason = "one arm for each part of the list")]
+            pub fn is_core(self) -> bool {
+                match self {
+                    $($list::$core => true,)*
+                    $($list::$core_implicit => true,)*
+                    $($list::$more => false,)*
+                }
             }
 
             /// Hands the method to the visitor.

@@ -24,6 +24,7 @@ impl MomentumMidpoint {
         evaluations: Some(2),
         reversible: Some(false),
         conserves: &[Conserved::Momentum],
+        worked_out: true,
         formula: "qm = q0 exp(h omega(q0, L0) / 2), Lm = L0 + h tau0 / 2, L1 = L0 + h taum, q1 = q0 exp(h omega(qm, Lm))",
         latex: &[
             r"q_m = \exp(\tfrac{h}{2}\,\omega(q_0, L_0))\,q_0,\quad L_m = L_0 + \tfrac{h}{2}\,\tau_0",

@@ -26,6 +26,7 @@ impl RestoredMomentum {
         evaluations: Some(1),
         reversible: Some(false),
         conserves: &[Conserved::MomentumNorm],
+        worked_out: true,
         formula: "l* = l + h l x omega0, I omega1 = l* |l| / |l*| + h tau0",
         latex: &[
             r"l = I\omega_0,\quad l^\ast = l + h\,l\times\omega_0",

@@ -23,6 +23,7 @@ impl Rk4 {
         symplectic: Some(false),
         reversible: Some(false),
         linear: Some(LinearTheory::RungeKutta(Rational::polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0]))),
+        worked_out: true,
         formula: "q1 = q0 + h (w1 + 2 w2 + 2 w3 + w4 - h [w1, w4] / 2) / 6, v1 = v0 + h (a1 + 2 a2 + 2 a3 + a4) / 6",
         latex: &[
             r"a_1 = a(t_0, q_0, v_0),\quad w_1 = v_0",

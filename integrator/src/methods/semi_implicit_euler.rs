@@ -25,6 +25,7 @@ impl SemiImplicitEuler {
             velocity: Rational::polynomial(&[1.0, 1.0]),
             oscillator: |k, c| Matrix2::new(1.0 - k, 1.0 - c, -k, 1.0 - c),
         }),
+        worked_out: true,
         formula: "v1 = v0 + h a(t0, q0, v0), q1 = q0 + h w(q0, v1)",
         latex: &[r"v_1 = v_0 + h\,a(t_0, q_0, v_0),\quad q_1 = q_0 + h\,v_1"],
         source: "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), I.1.2 (1.9)",

@@ -24,6 +24,7 @@ impl VelocityVerlet {
         symplectic: Some(true),
         reversible: Some(true),
         linear: Some(LinearTheory::Partitioned { velocity: Rational::polynomial(&[1.0, 1.0, 0.5]), oscillator }),
+        worked_out: true,
         formula: "u = v0 + h a0 / 2, q1 = q0 + h w(qh, u), v1 = u + h a(t1, q1, v0 + h a0) / 2",
         latex: &[
             r"a_0 = a(t_0, q_0, v_0),\quad q_1 = q_0 + h\,v_0 + \tfrac{h^2}{2}\,a_0",

@@ -88,7 +88,7 @@ pub fn judge<'a>(
     }
     let judged = in_parallel(
         &groups,
-        |group| cost(group),
+        |group| cost(known, group),
         progress,
         |group| -> Result<Vec<Judged>, Error> {
             let candidate = candidate(known.method(group[0])?);
@@ -100,9 +100,10 @@ pub fn judge<'a>(
 }
 
 /// Evaluations of a group, more or less.
-fn cost(group: &[&Row]) -> u64 {
+fn cost(known: &Known, group: &[&Row]) -> u64 {
     let precision = if group[0].precision == Precision::DoubleDouble { 30 } else { 1 };
-    let implicit = if group[0].method.starts_with("implicit") { 50 } else { 4 };
+    let is_implicit = known.method(group[0]).is_ok_and(Stepper::is_implicit);
+    let implicit = if is_implicit { 50 } else { 4 };
     group.iter().map(|row| row.steps).max().unwrap_or(0) * precision * implicit
 }
 

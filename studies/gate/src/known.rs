@@ -100,7 +100,7 @@ impl Known {
     fn order(&self, row: &Row) -> Option<f64> {
         let Subject::Error(quantity) = row.quantity else { return None };
         let method = self.method(row).ok()?.of_theory()?;
-        match self.get(row).ok()?.scene.scene().theory(method, quantity, row.end_s).order {
+        match self.get(row).ok()?.scene.scene().expected_error(method, quantity, row.end_s).order {
             ExpectedOrder::Of(order) => Some(order),
             _ => None,
         }

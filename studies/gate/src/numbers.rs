@@ -165,7 +165,7 @@ impl<'a> Runs<'a> {
 
     fn constant(&self, quantity: Quantity, row: &Row) -> Result<f64, Measured> {
         let method = Stepper::from_id(&row.method, self.scene).ok().and_then(Stepper::of_theory);
-        let theory = method.map(|method| self.scene.scene().theory(method, quantity, row.end_s).order);
+        let theory = method.map(|method| self.scene.scene().expected_error(method, quantity, row.end_s).order);
         let Some(ExpectedOrder::Of(p)) = theory else {
             return Err(Measured::Undefined("theory names no order for a constant".to_owned()));
         };

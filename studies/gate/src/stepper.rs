@@ -4,7 +4,6 @@ use integrator::methods::MethodId;
 use integrator::rigid_body::{AttitudeUpdate, Storage};
 
 use measure::error::Error;
-use measure::rotation::orders::is_rigid;
 use measure::rotation::{Rule, Scheme};
 use scenes::any::AnyScene;
 use scenes::run::{Precision, Run, Trajectory, method_from_id};
@@ -36,7 +35,7 @@ pub struct Ask<'a> {
 impl Stepper {
     /// Every one that a scene can be stepped with.
     pub fn all(scene: &dyn AnyScene) -> Vec<Stepper> {
-        if is_rigid(scene) {
+        if scene.is_rigid() {
             Scheme::all().into_iter().map(Stepper::Turning).collect()
         } else {
             MethodId::ALL.iter().copied().map(Stepper::Flat).collect()
@@ -48,7 +47,7 @@ impl Stepper {
     /// # Errors
     /// [`Error::UnknownName`] with the list of those that the scene can be stepped with.
     pub fn from_id(id: &str, scene: &dyn AnyScene) -> Result<Self, Error> {
-        if !is_rigid(scene) {
+        if !scene.is_rigid() {
             return Ok(Stepper::Flat(method_from_id(id)?));
         }
         let known = || Scheme::all().into_iter().map(Scheme::id);

@@ -2,7 +2,6 @@
 
 pub mod cli;
 mod findings;
-pub mod formulas;
 pub mod page;
 pub mod plan;
 pub mod produce;

@@ -4,7 +4,6 @@ use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::Storage;
 use reports::{Block, Section, Table};
 
-use crate::formulas;
 use measure::names::{anchor, scene_title};
 use measure::study::short;
 use scenes::any::AnyScene;
@@ -41,14 +40,14 @@ fn facts(facts: &[(&str, String)]) -> Block {
 
 fn method_group(method: MethodId) -> Block {
     let implicit = if method.is_implicit() { ", implicit: Newton's iteration" } else { "" };
-    let mut blocks: Vec<Block> = formulas(formulas::of_method(method)).collect();
-    blocks.push(facts(&[("source", formulas::source_of_method(method).to_owned()), ("name", method.id().to_owned())]));
+    let mut blocks: Vec<Block> = formulas(method.facts().latex).collect();
+    blocks.push(facts(&[("source", method.facts().source.to_owned()), ("name", method.id().to_owned())]));
     let note = format!("order {}{implicit}", method.order());
     Block::Group { id: anchor("method", method.id()), title: method.title().to_owned(), note, blocks }
 }
 
 fn step_group(step: RigidStep) -> Block {
-    let mut blocks: Vec<Block> = formulas(formulas::of_rigid_step(step)).collect();
+    let mut blocks: Vec<Block> = formulas(step.facts().latex).collect();
     blocks.push(facts(&[("source", step.source().to_owned()), ("name", step.id().to_owned())]));
     let note = format!("order {}, rigid bodies only", step.order());
     Block::Group { id: anchor("method", step.id()), title: step.title().to_owned(), note, blocks }
@@ -58,7 +57,7 @@ fn stored() -> Block {
     let one = |storage: Storage| {
         [
             Block::Text(format!("{}:", scene_title(storage.id()).replace("omega", "ω"))),
-            Block::Formula(formulas::of_storage(storage).to_owned()),
+            Block::Formula(equation(storage).to_owned()),
         ]
     };
     Block::Group {
@@ -66,6 +65,20 @@ fn stored() -> Block {
         title: "What a rigid body stores".to_owned(),
         note: "four models of the same motion, one of them wrong".to_owned(),
         blocks: Storage::ALL.into_iter().flat_map(one).collect(),
+    }
+}
+
+/// The equation of motion that a model of a rigid body integrates.
+fn equation(storage: Storage) -> &'static str {
+    match storage {
+        Storage::WorldOmega => {
+            r"I_w\,\dot\omega = \tau - \omega\times I_w\omega,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
+        }
+        Storage::BodyOmega => r"I\,\dot\omega = \tau + I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
+        Storage::WorldMomentum => r"\dot L = \tau,\quad \omega = R\,I^{-1} R^{T} L,\quad \dot q = \tfrac12\,\omega\,q",
+        Storage::WithoutGyroscopicTerm => {
+            r"I_w\,\dot\omega = \tau,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
+        }
     }
 }
 
@@ -111,7 +124,7 @@ fn theory(any: &dyn AnyScene) -> Table {
     let start = any.exact_in(Precision::F64, 0.0);
     for &method in MethodId::ALL {
         for (quantity, _) in start.distances(&start) {
-            let theory = any.scene().theory(method, quantity, any.scene().info().horizon_s);
+            let theory = any.scene().expected_error(method, quantity, any.scene().info().horizon_s);
             let order = match theory.order {
                 ExpectedOrder::Exact => "exact".to_owned(),
                 ExpectedOrder::Of(order) => order.to_string(),
@@ -127,7 +140,7 @@ fn theory(any: &dyn AnyScene) -> Table {
 fn limits(any: &dyn AnyScene) -> Table {
     let mut table = Table::new(&["method", "largest step (s)", "why"], &["largest step (s)"]);
     for &method in MethodId::ALL {
-        if let Some((limit, reason)) = any.scene().stability_limit(method) {
+        if let Some((limit, reason)) = any.scene().expected_limit(method) {
             let step = match limit {
                 StabilityLimit::NoStep => "none is stable".to_owned(),
                 StabilityLimit::Below(h_s) => short(Some(h_s)),
@@ -137,4 +150,21 @@ fn limits(any: &dyn AnyScene) -> Table {
         }
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_formula_can_be_typeset() {
+        let methods = MethodId::ALL.iter().flat_map(|&m| m.facts().latex).copied();
+        let steps = RigidStep::ALL.iter().flat_map(|&s| s.facts().latex).copied();
+        let stored = Storage::ALL.into_iter().map(equation);
+        let motions: Vec<_> = scenes::all().iter().map(|scene| scene.scene().info().equation).collect();
+        for latex in methods.chain(steps).chain(stored).chain(motions) {
+            let mathml = reports::mathml(latex).unwrap_or_else(|error| panic!("{error}"));
+            assert!(mathml.contains("<mi>") && mathml.contains("</math>"), "{latex}: {mathml}");
+        }
+    }
 }

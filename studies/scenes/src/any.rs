@@ -26,6 +26,9 @@ pub trait AnyScene: Send + Sync {
     /// The same, to set its parameters.
     fn scene_mut(&mut self) -> &mut dyn Scene;
 
+    /// Whether it is a rigid body: there is then something to choose of what is stored.
+    fn is_rigid(&self) -> bool;
+
     /// The exact motion, in double-double.
     fn exact(&self, t: fx128) -> Observation;
 
@@ -88,6 +91,9 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn scene_mut(&mut self) -> &mut dyn Scene {
         &mut self.scene
     }
+    fn is_rigid(&self) -> bool {
+        false
+    }
     fn exact(&self, t: fx128) -> Observation {
         Motion::<fx128>::observe(&self.scene, &self.scene.exact(t))
     }
@@ -135,6 +141,9 @@ where
     }
     fn scene_mut(&mut self) -> &mut dyn Scene {
         &mut self.scene
+    }
+    fn is_rigid(&self) -> bool {
+        true
     }
     fn exact(&self, t: fx128) -> Observation {
         Observation::of_motion(&RigidMotion::<fx128>::exact(&self.scene, t))

@@ -55,6 +55,22 @@ pub trait Scene: Parameters + Any + Send + Sync {
         f64::INFINITY
     }
 
+    /// Whether the motion goes round or to and fro, with 2 pi times the time scale as its period.
+    fn is_periodic(&self) -> bool {
+        true
+    }
+
+    /// Whether rounding errors add up as independent ones do, relative to the size of a coordinate: not where the motion
+    /// forgets them, where an event multiplies them, nor where a coordinate grows all the time.
+    fn rounding_accumulates(&self) -> bool {
+        true
+    }
+
+    /// Whether a rigid body turns about one principal axis all the time.
+    fn turns_about_one_axis(&self) -> bool {
+        false
+    }
+
     /// What theory says of a method's error in a quantity at the time `end_s`.
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         let _ = (quantity, end_s);
@@ -71,6 +87,28 @@ pub trait Scene: Parameters + Any + Send + Sync {
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
         let _ = method;
         None
+    }
+}
+
+/// What is known beforehand of a method: the scene's theory where it was worked out for the method, else nothing.
+impl dyn Scene + '_ {
+    /// The error in a quantity at the time `end_s`. The order of a method without theory is a least one.
+    pub fn expected_error(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
+        if method.facts().worked_out {
+            self.theory(method, quantity, end_s)
+        } else {
+            Theory::least(method, self.breaks_s(end_s).is_empty())
+        }
+    }
+
+    /// The growth of the error of a balance over a long run with the step `h_s`.
+    pub fn expected_growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
+        method.facts().worked_out.then(|| self.growth(method, balance, h_s))?
+    }
+
+    /// The largest stable step, and where the formula comes from.
+    pub fn expected_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
+        method.facts().worked_out.then(|| self.stability_limit(method))?
     }
 }
 

@@ -1,6 +1,6 @@
 //! How to step: a rule of a step, what a rigid body stores, how its attitude is advanced.
 
-use integrator::methods::{MethodId, RigidStep};
+use integrator::methods::{Facts, MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
 
 /// The rule of a step.
@@ -51,18 +51,18 @@ impl Scheme {
     /// Every one that is compared, those of one stored quantity together.
     pub fn all() -> Vec<Scheme> {
         use AttitudeUpdate::{Exponential, Linear};
-        use MethodId::{ExplicitEuler, ImplicitEuler, ImplicitMidpoint, Rk4, SemiImplicitEuler, VelocityVerlet};
         let mut all = Vec::new();
         for storage in Storage::ALL {
-            let methods: &[MethodId] = match storage {
-                Storage::BodyOmega => {
-                    &[ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4, ImplicitEuler, ImplicitMidpoint]
-                }
-                Storage::WithoutGyroscopicTerm => &[ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4],
-                _ => &[ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4, ImplicitMidpoint],
+            // Where the frame turns with the step, equations are solved only for what a symplectic method keeps.
+            let takes = |method: &MethodId| match storage {
+                Storage::BodyOmega => true,
+                Storage::WithoutGyroscopicTerm => !method.is_implicit(),
+                _ => !method.is_implicit() || method.facts().symplectic == Some(true),
             };
-            all.extend(methods.iter().map(|&method| Self::general(method, storage, Exponential)));
-            all.extend([ExplicitEuler, SemiImplicitEuler].map(|method| Self::general(method, storage, Linear)));
+            let methods = || MethodId::ALL.iter().copied().filter(takes);
+            all.extend(methods().map(|method| Self::general(method, storage, Exponential)));
+            let simplest = methods().filter(|method| method.order() == 1 && !method.is_implicit());
+            all.extend(simplest.map(|method| Self::general(method, storage, Linear)));
         }
         all.extend(RigidStep::ALL.iter().map(|&step| Self::rigid(step, Exponential)));
         // The second-order steps lose nothing by the linear update, and nobody takes it for them.
@@ -105,17 +105,22 @@ impl Scheme {
         if self.update == AttitudeUpdate::Linear { format!("{rule}, linear step") } else { rule }
     }
 
+    /// What is known of the rule.
+    pub fn facts(self) -> &'static Facts {
+        match self.rule {
+            Rule::General(method) => method.facts(),
+            Rule::Rigid(step) => step.facts(),
+        }
+    }
+
     /// The order of the rule, on a body whose model is consistent.
     pub fn order(self) -> u32 {
-        match self.rule {
-            Rule::General(method) => method.order(),
-            Rule::Rigid(step) => step.order(),
-        }
+        self.facts().order_on_rotations.unwrap_or(self.facts().order)
     }
 
     /// Whether a step solves equations.
     pub fn is_implicit(self) -> bool {
-        matches!(self.rule, Rule::General(method) if method.is_implicit())
+        self.facts().implicit
     }
 
     /// Whether the gyroscopic term is left out.

@@ -79,6 +79,19 @@ impl Theory {
         }
     }
 
+    /// What holds of a method that no theory was worked out for: the smallest of its orders, or a higher one; where the motion is
+    /// not smooth, the first.
+    pub fn least(method: MethodId, is_smooth: bool) -> Self {
+        let facts = method.facts();
+        let others = [facts.order_with_velocity, facts.order_on_rotations, (!is_smooth).then_some(1)];
+        let least = others.into_iter().flatten().fold(facts.order, u32::min);
+        Theory {
+            order: ExpectedOrder::Of(f64::from(least)),
+            reason: "the least order that the method states; nothing else is known",
+            ..Self::usual(method)
+        }
+    }
+
     /// No error but rounding.
     pub fn exact(reason: &'static str) -> Self {
         Theory { order: ExpectedOrder::Exact, constant: None, doubt: 0.0, reason }

@@ -1,14 +1,12 @@
 //! The time of a step: unobserved, uncounted, compiled for the one scene, method and storage, with no virtual call in it.
 //!
-//! Compiled in f64 are all methods with the angular velocity of the body, and the explicit ones with that of the world; in f32
-//! the explicit ones with that of the body.
+//! Compiled in f64 are all methods of the core with the angular velocity of the body, and the explicit ones with that of the
+//! world; in f32 the explicit ones with that of the body. The implicit ones are the larger part of a build.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use integrator::methods::{
-    ExplicitEuler, MethodId, RigidStep, RigidVisitor, Rk4, SemiImplicitEuler, VelocityVerlet, Visitor,
-};
+use integrator::methods::{RigidStep, RigidVisitor, Visitor};
 use integrator::rigid_body::{AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WorldOmega};
 use integrator::{Method, Model, Single, State, Vector, drive};
 
@@ -29,16 +27,16 @@ pub struct Lap {
     pub checksum: f64,
 }
 
-/// Times a run of a scene that is its own model, with every method.
+/// Times a run of a scene that is its own model, with every method of the core.
 pub(crate) fn particles<S: Motion<f64>>(scene: &S, run: &Run, laps: Laps) -> Option<Lap> {
     let Rule::General(method) = run.scheme.rule else { return None };
-    Some(method.visit(Watch { model: scene, start: scene.exact(0.0), pace: Pace::of(run, laps) }))
+    method.visit_core(Watch { model: scene, start: scene.exact(0.0), pace: Pace::of(run, laps) })
 }
 
 /// The same with the explicit methods, in any arithmetic; `None` for an implicit one.
 pub(crate) fn particles_explicit<T: Single, S: Motion<T>>(scene: &S, run: &Run, laps: Laps) -> Option<Lap> {
     let Rule::General(method) = run.scheme.rule else { return None };
-    explicit(method, Watch { model: scene, start: scene.exact(T::lit(0.0)), pace: Pace::of(run, laps) })
+    method.visit_core_explicit(Watch { model: scene, start: scene.exact(T::lit(0.0)), pace: Pace::of(run, laps) })
 }
 
 /// Times a run of a rigid body that stores an angular velocity; `None` for another storage, and for an implicit method that
@@ -52,11 +50,11 @@ pub(crate) fn body<B: RigidMotion<f64>>(body: &B, run: &Run, laps: Laps) -> Opti
     match run.scheme.storage {
         Storage::WorldOmega => {
             let model = WorldOmega::<&B>::new(body);
-            explicit(method, Watch { model: &model, start: model.state(&start), pace })
+            method.visit_core_explicit(Watch { model: &model, start: model.state(&start), pace })
         }
         Storage::BodyOmega => {
             let model = BodyOmega::<&B>::new(body);
-            Some(method.visit(Watch { model: &model, start: model.state(&start), pace }))
+            method.visit_core(Watch { model: &model, start: model.state(&start), pace })
         }
         _ => None,
     }
@@ -70,19 +68,8 @@ pub(crate) fn body_explicit<T: Single, B: RigidMotion<T>>(body: &B, run: &Run, l
         Rule::General(_) => return None,
     };
     let model = BodyOmega::<&B>::new(body);
-    explicit(method, Watch { model: &model, start: model.state(&body.exact(T::lit(0.0))), pace: Pace::of(run, laps) })
-}
-
-/// As [`MethodId::visit`], and compiles no implicit method: they are the larger part of a build, and in f32 and with the angular
-/// velocity of the world nobody asks for their time.
-fn explicit<T: Single, M: Model<T>>(method: MethodId, watch: Watch<'_, T, M>) -> Option<Lap> {
-    Some(match method {
-        MethodId::ExplicitEuler => watch.visit(&ExplicitEuler),
-        MethodId::SemiImplicitEuler => watch.visit(&SemiImplicitEuler),
-        MethodId::VelocityVerlet => watch.visit(&VelocityVerlet),
-        MethodId::Rk4 => watch.visit(&Rk4),
-        MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => return None,
-    })
+    let start = model.state(&body.exact(T::lit(0.0)));
+    method.visit_core_explicit(Watch { model: &model, start, pace: Pace::of(run, laps) })
 }
 
 /// Times a run with a step that exists for rigid bodies only.

@@ -25,7 +25,7 @@ use methods::{EXPLICIT, IMPLICIT, MIDPOINT, RK4, SEMI_IMPLICIT, Steps, VERLET};
 use models::{Drive, Flat, Law, Loads, Wrong};
 use reports::Verdict;
 use scenes::any::AnyScene;
-use scenes::erased::{AnyMotion, BodyMotion, FlatMotion};
+use scenes::erased::{AnyMotion, BodyMotion, FlatScene};
 use scenes::errors::{self, Truth};
 use scenes::observation::Observation;
 use scenes::run::{Place, Precision, Samples, Trajectory};
@@ -50,10 +50,8 @@ impl Candidate for Fault {
             return None;
         }
         Some(match ask.scene.any_motion() {
-            AnyMotion::One(motion) => self.flat(motion, ask),
-            AnyMotion::Two(motion) => self.flat(motion, ask),
-            AnyMotion::Three(motion) => self.flat(motion, ask),
-            AnyMotion::Sixteen(motion) => self.flat(motion, ask),
+            AnyMotion::Few(scene) => self.flat(&scene, ask),
+            AnyMotion::Many(scene) => self.flat(&scene, ask),
             AnyMotion::Pivoted(motion) => self.turning(motion, ask),
             AnyMotion::Flying(motion) => self.turning(motion, ask),
         })
@@ -61,8 +59,9 @@ impl Candidate for Fault {
 }
 
 impl Fault {
-    fn flat<const N: usize>(&self, motion: FlatMotion<'_, N>, ask: &Ask<'_>) -> Trajectory {
-        let model = Flat { motion, law: self.law };
+    fn flat<const N: usize>(&self, scene: &FlatScene<'_, N>, ask: &Ask<'_>) -> Trajectory {
+        let motion = scene.motion();
+        let model = Flat { motion, dimension: scene.dimension, law: self.law };
         self.driven(&model, motion.exact(0.0), ask, |s| motion.observe(s))
     }
 

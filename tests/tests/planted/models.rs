@@ -56,6 +56,8 @@ impl Law {
 /// A flat scene with a fault.
 pub(crate) struct Flat<'a, const N: usize> {
     pub motion: FlatMotion<'a, N>,
+    /// Coordinates of the scene, the first of `N`.
+    pub dimension: usize,
     pub law: Law,
 }
 
@@ -81,12 +83,12 @@ impl<const N: usize> Model<f64> for Flat<'_, N> {
             Law::StateInSingle => of(t, &State { q: s.q.map(single), v: s.v.map(single) }),
             Law::ComponentsSwapped => {
                 let mut rate = of(t, s);
-                rate.swap_rows(0, N - 1);
+                rate.swap_rows(0, self.dimension - 1);
                 rate
             }
             Law::LastComponentLost => {
                 let mut rate = of(t, s);
-                rate[N - 1] = 0.0;
+                rate[self.dimension - 1] = 0.0;
                 rate
             }
             Law::ConstantAdded => of(t, s).add_scalar(1e-6),

@@ -191,10 +191,8 @@ impl Candidate for Wrong {
             Mutant::SingleParameters => self.stepper.run(&Ask { scene: in_single(ask.scene)?.as_ref(), ..*ask }),
             Mutant::MassIgnored => self.stepper.run(&Ask { scene: without_mass(ask.scene)?.as_ref(), ..*ask }),
             _ => match ask.scene.any_motion() {
-                AnyMotion::One(motion) => self.on_flat(motion, clock(ask)?),
-                AnyMotion::Two(motion) => self.on_flat(motion, clock(ask)?),
-                AnyMotion::Three(motion) => self.on_flat(motion, clock(ask)?),
-                AnyMotion::Sixteen(motion) => self.on_flat(motion, clock(ask)?),
+                AnyMotion::Few(scene) => self.on_flat(scene.motion(), clock(ask)?),
+                AnyMotion::Many(scene) => self.on_flat(scene.motion(), clock(ask)?),
                 AnyMotion::Pivoted(motion) => match self.mutant {
                     Mutant::NotNormalised => self.never_settled(motion, clock(ask)?),
                     _ => self.turning(motion, ask),
@@ -371,8 +369,8 @@ mod tests {
         let flat = scenes::by_id("forced-oscillator").expect("a scene");
         let clock_of = |ask: &Ask<'_>| clock(ask).expect("f64");
         let asked = ask(flat.as_ref());
-        let AnyMotion::One(motion) = flat.any_motion() else { panic!("one coordinate") };
-        assert_same(&on_flat(&RIGHT_RK4, motion, clock_of(&asked)), &built_in_run("rk4", &asked));
+        let AnyMotion::Few(erased) = flat.any_motion() else { panic!("one coordinate") };
+        assert_same(&on_flat(&RIGHT_RK4, erased.motion(), clock_of(&asked)), &built_in_run("rk4", &asked));
         let body = scenes::by_id("heavy-top").expect("a scene");
         let asked = ask(body.as_ref());
         let AnyMotion::Pivoted(motion) = body.any_motion() else { panic!("a pivoted body") };

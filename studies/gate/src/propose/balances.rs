@@ -33,7 +33,7 @@ impl Maker<'_> {
         ];
         let mut rows = Vec::new();
         for (balance, drift) in balances {
-            let Some(growth) = scene.growth(method, balance, h_s) else { continue };
+            let Some(growth) = scene.expected_growth(method, balance, h_s) else { continue };
             let row = |kind| self.row(Precision::F64, Subject::Balance(drift), kind, steps, h_s * steps as f64);
             let measured = |kind| self.double.measure(&row(kind)).value().map(|x| (row(kind), x));
             rows.extend(grown(growth, measured));

@@ -119,7 +119,7 @@ impl Maker<'_> {
 
     fn theory(&self, quantity: Subject) -> Option<Theory> {
         let Subject::Error(quantity) = quantity else { return None };
-        Some(self.scene.scene().theory(self.stepper.of_theory()?, quantity, self.horizon()))
+        Some(self.scene.scene().expected_error(self.stepper.of_theory()?, quantity, self.horizon()))
     }
 
     fn horizon(&self) -> f64 {
@@ -185,7 +185,7 @@ impl Maker<'_> {
     fn limit(&self) -> Option<Row> {
         let Stepper::Flat(method) = self.stepper else { return None };
         let info = self.scene.scene().info();
-        let (limit, reason) = self.scene.scene().stability_limit(method)?;
+        let (limit, reason) = self.scene.scene().expected_limit(method)?;
         let row = self.row(Precision::F64, Subject::Step, Kind::StabilityLimit, 1, info.horizon_s);
         let x = self.double.measure(&row).value()?;
         let reason = format!("theory: {reason}");

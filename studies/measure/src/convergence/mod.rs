@@ -177,7 +177,7 @@ impl Job<'_> {
 
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
         let row = |errors: Errors| {
-            let theory = self.scene.scene().theory(self.method, errors.quantity, self.known.end_s);
+            let theory = self.scene.scene().expected_error(self.method, errors.quantity, self.known.end_s);
             let mut known = self.known.leading.iter();
             let leading = known.find(|one| (one.method, one.quantity) == (self.method, errors.quantity));
             Row {

@@ -284,7 +284,7 @@ impl<'a> Track<'a> {
             Drift::AngularMomentumNorm => Balance::AngularMomentum,
             _ => return None,
         };
-        self.scene.scene().growth(method, balance, self.h_s)
+        self.scene.scene().expected_growth(method, balance, self.h_s)
     }
 }
 

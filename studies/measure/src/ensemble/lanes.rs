@@ -4,7 +4,7 @@
 //! arithmetic), so that nothing is known of an ensemble that is not known of its members.
 
 use integrator::lanes::{Laned, Pack};
-use integrator::methods::{ExplicitEuler, MethodId, Rk4, SemiImplicitEuler, VelocityVerlet};
+use integrator::methods::{MethodId, Visitor};
 use integrator::pose::Pose;
 use integrator::{Method, Model, Real, Rotation, Space, State, Vector, drive};
 use nalgebra::{SMatrix, Vector3};
@@ -99,13 +99,7 @@ pub fn run_pack<L: Laned, M: Model<L>, Q: Coordinates<Scalar = f64>>(
 where
     M::Config: Coordinates<Scalar = L>,
 {
-    let run = |members: &[State<Q>]| match method {
-        MethodId::ExplicitEuler => Some(advance(&ExplicitEuler, model, members, end_s, steps)),
-        MethodId::SemiImplicitEuler => Some(advance(&SemiImplicitEuler, model, members, end_s, steps)),
-        MethodId::VelocityVerlet => Some(advance(&VelocityVerlet, model, members, end_s, steps)),
-        MethodId::Rk4 => Some(advance(&Rk4, model, members, end_s, steps)),
-        MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => None,
-    };
+    let run = |members: &[State<Q>]| method.visit_explicit(Members { model, start: packed(members), end_s, steps });
     let end = |state: &State<M::Config>, lane| unpacked(state, lane);
     Some(match run(members)? {
         Some(state) => (0..members.len()).map(|lane| Some(end(&state, lane))).collect(),
@@ -113,16 +107,19 @@ where
     })
 }
 
-fn advance<L: Laned, M: Model<L>, A: Method<L, M>, Q: Coordinates<Scalar = f64>>(
-    method: &A,
-    model: &M,
-    members: &[State<Q>],
+/// One run of a pack to the end.
+struct Members<'a, L: Laned, M: Model<L>> {
+    model: &'a M,
+    start: State<M::Config>,
     end_s: f64,
     steps: u64,
-) -> Option<State<M::Config>>
-where
-    M::Config: Coordinates<Scalar = L>,
-{
-    let h = L::lit(end_s) / L::lit(steps as f64);
-    drive::advance(method, model, packed(members), h, steps).ok()
+}
+
+impl<L: Laned, M: Model<L>> Visitor<L, M> for Members<'_, L, M> {
+    type Output = Option<State<M::Config>>;
+
+    fn visit<A: Method<L, M>>(self, method: &A) -> Self::Output {
+        let h = L::lit(self.end_s) / L::lit(self.steps as f64);
+        drive::advance(method, self.model, self.start, h, self.steps).ok()
+    }
 }

@@ -218,7 +218,7 @@ fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: 
     let row = |quantity| {
         let of = |errors: &Errors| Some(errors.as_ref()?.iter().find(|(q, _)| *q == quantity)?.1);
         let ranked = Ranked::new(errors.iter().map(of));
-        let ExpectedOrder::Of(order) = scene.theory(method, quantity, scene.info().horizon_s).order else {
+        let ExpectedOrder::Of(order) = scene.expected_error(method, quantity, scene.info().horizon_s).order else {
             return (quantity, ranked, None);
         };
         (quantity, ranked, Some(order))

@@ -46,7 +46,7 @@ impl Study for Rotation {
         let mut rows = orders::measure(selection, &schemes);
         rows.extend(on_free_bodies(selection, &schemes));
         let scenes: Vec<&dyn AnyScene> =
-            selection.scenes.iter().map(AsRef::as_ref).filter(|scene| orders::is_rigid(*scene)).collect();
+            selection.scenes.iter().map(AsRef::as_ref).filter(|scene| scene.is_rigid()).collect();
         let same =
             || in_parallel(&scenes, |_| 1, &selection.progress, |scene| same_motions(*scene, selection.end_s(*scene)));
         let (same, printed) = rayon::join(same, printed);

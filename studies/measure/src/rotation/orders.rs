@@ -23,7 +23,7 @@ const HALVINGS: u32 = 7;
 
 /// Every scene of the selection that is a rigid body, every scheme, every step.
 pub fn measure(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
-    let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).filter(|s| is_rigid(*s)).collect();
+    let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).filter(|s| s.is_rigid()).collect();
     let known: Vec<Known> = scenes.iter().map(|&scene| Known::of(scene, selection.end_s(scene))).collect();
     let of_scene = |(&scene, known)| schemes.iter().map(move |&scheme| (known, scene, scheme));
     let jobs: Vec<(&Known, &dyn AnyScene, Scheme)> = scenes.iter().zip(&known).flat_map(of_scene).collect();
@@ -32,11 +32,6 @@ pub fn measure(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
         sweep(scene, known, scheme, &selection.sweep(scene, 1..=HALVINGS))
     })
     .concat()
-}
-
-/// Whether a scene is a rigid body whose rotation is looked at.
-pub fn is_rigid(scene: &dyn AnyScene) -> bool {
-    scene.exact(fx128::ZERO).rotation().is_some()
 }
 
 /// What is known of a scene before it is run.
@@ -100,7 +95,7 @@ fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Ve
     let is_wrong = scheme.lacks_gyroscopic_term() && known.without > 0.0;
     let order = if is_wrong { 0.0 } else { f64::from(scheme.order()) };
     // The angle is a quadratic polynomial of t.
-    let exact = scene.id() == "principal-axis-torque" && scheme.order() > 1;
+    let exact = scene.scene().turns_about_one_axis() && scheme.facts().worked_out && scheme.order() > 1;
     [Quantity::Attitude, Quantity::AngularVelocity]
         .map(|quantity| Row {
             t_s: end_s,

@@ -28,9 +28,9 @@ const JURY: f64 = 1e-24;
 const LADDER: [f64; 2] = [0.002, 1024.0];
 /// Ratio of two rungs.
 const RUNG: f64 = 2.0;
-/// Rungs below the ladder where its first step is not stable: light damping holds explicit Euler with steps of 2 zeta / omega. The
-/// growth z^2 / 2 of a method without a stable step is above the rounding of the matrix there: `JURY`, or `ROUNDING`.
-const RUNGS_BELOW: [i32; 2] = [24, 8];
+/// Rungs below the ladder for two by two, where its first step is not stable: light damping holds explicit Euler with steps of
+/// 2 zeta / omega. A growth of z^4 / 8 is still above `JURY` there; larger matrices are known to `ROUNDING` only.
+const RUNGS_BELOW: i32 = 10;
 
 /// A square matrix, row after row.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,8 +135,8 @@ pub fn limit(stepping: &Stepping<'_>) -> Option<StabilityLimit> {
     matrix(stepping, scale)?;
     let stable = |h: f64| columns(stepping, h, false).and_then(|m| m.is_stable());
     let mut low = LADDER[0] * scale;
-    let n = 2 * dimension(stepping.scene);
-    let floor = low / RUNG.powi(RUNGS_BELOW[usize::from(n > 2)]);
+    let is_small = dimension(stepping.scene) == 1;
+    let floor = low / RUNG.powi(if is_small { RUNGS_BELOW } else { 0 });
     while !stable(low)? {
         low /= RUNG;
         if low < floor {

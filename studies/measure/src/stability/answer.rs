@@ -68,7 +68,7 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
             "  no linear theory; judged by running {TIME_SCALES} time scales: a run fails that leaves the range of the exact motion {LEAVES} times over"
         )),
     }
-    if let Some((limit, reason)) = stepping.scene.scene().stability_limit(stepping.method) {
+    if let Some((limit, reason)) = stepping.scene.scene().expected_limit(stepping.method) {
         line(format!("  closed form: {} ({reason})", limits::number(limit).map_or_else(String::new, seconds)));
     }
     let limit_s = match found {

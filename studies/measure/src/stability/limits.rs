@@ -22,7 +22,7 @@ const IMPLICIT_LENGTHS: [u32; 1] = [8];
 /// Growth over a run, as a natural logarithm, that is told from none: its last half grows by e^1.5.
 const SEEN: f64 = 3.0;
 /// Part of a bracket's width by which a step may lie beyond the limit and not be seen to fail.
-pub const UNSEEN: f64 = 0.25;
+pub const UNSEEN: f64 = 0.5;
 
 /// One job: a scene, a method and a precision.
 pub(super) fn rows(stepping: &Stepping<'_>) -> Vec<Row> {
@@ -76,9 +76,9 @@ impl Trial {
         while width < WIDEST && needed(width) > 1 << LENGTHS[2] {
             width *= 2.0;
         }
-        let enough = |patience: &u64| *patience >= needed(width);
-        let patience = [judge::PATIENCE, 1 << LENGTHS[1]].into_iter().find(enough).unwrap_or(1 << LENGTHS[2]);
-        Trial { patience, width, sees: enough(&patience) }
+        let (needed, most) = (needed(width), 1 << LENGTHS[2]);
+        let patience = needed.min(most).next_power_of_two().max(judge::PATIENCE);
+        Trial { patience, width, sees: needed <= most }
     }
 
     /// The least growth per step, as a natural logarithm, that shows in so many steps.
@@ -89,7 +89,11 @@ impl Trial {
     /// Whether the difference of two runs, one displaced, does not grow exponentially. On a linear scene the difference obeys the
     /// equation without forces: what grows is the method's doing, and a steady drift under gravity does not count.
     pub fn holds(self, stepping: &Stepping<'_>, h_s: f64) -> bool {
-        let lengths: &[u32] = if stepping.method.is_implicit() { &IMPLICIT_LENGTHS } else { &LENGTHS };
+        let [short, middle, long] = LENGTHS;
+        // A run that is longer than growth needs decides what a drift leaves open; none is longer than that where growth needs more.
+        let last = if self.patience > 1 << middle { self.patience.ilog2() } else { long };
+        let lengths = [short, middle, last];
+        let lengths: &[u32] = if stepping.method.is_implicit() { &IMPLICIT_LENGTHS } else { &lengths };
         for &log2_steps in lengths {
             match judge::trend_after(&difference(stepping, h_s, &GENERIC, log2_steps), self.patience) {
                 Some(trend) => return trend != Trend::Exponential,
@@ -107,7 +111,7 @@ fn limit_row(stepping: &Stepping<'_>, theory: StabilityLimit) -> Row {
     let scene = stepping.scene.scene();
     let scale = scene.info().time_scale_s;
     let (found, trial) = (measure(stepping, theory), Trial::of(stepping, theory));
-    let closed = scene.stability_limit(stepping.method);
+    let closed = scene.expected_limit(stepping.method);
     let (low, high, beyond) = match found {
         _ if !trial.sees => (None, None, f64::NAN),
         Found::NoStep { tried_s } => (None, Some(tried_s), tried_s),

@@ -2,9 +2,12 @@
 
 use integrator::methods::{MethodId, Visitor};
 use integrator::{Method, Model, State};
-use nalgebra::{Vector1, Vector2};
+use nalgebra::{Complex, Vector1, Vector2};
 
 use super::judge::{self, Trend};
+use scenes::DampedOscillator;
+use scenes::scene::Scene;
+use scenes::theory::StabilityLimit;
 
 /// x'' = -x - 2 zeta x'.
 #[derive(Clone, Copy, Debug)]
@@ -90,51 +93,15 @@ impl Scheme {
 
     /// The largest stable h omega of theory as a function of the damping ratio; infinite where there is none.
     ///
-    /// Closed forms: explicit Euler 2 zeta (up to zeta = 1), 2 (zeta - sqrt(zeta^2 - 1)) beyond; semi-implicit Euler
-    /// 2 (sqrt(1 + zeta^2) - zeta); with implicit damping 2 (sqrt(1 + zeta^2) + zeta). Verlet by Jury's conditions on its
-    /// trace and determinant, RK4 by |R(h lambda)| <= 1.
+    /// Of a listed method the limit of the scene `damped-oscillator`; with implicit damping 2 (sqrt(1 + zeta^2) + zeta).
     pub fn limit(self, zeta: f64) -> f64 {
-        let root = zeta.hypot(1.0);
-        match self {
-            Scheme::ImplicitDamping => 2.0 * (root + zeta),
-            Scheme::Listed(MethodId::ExplicitEuler) if zeta <= 1.0 => 2.0 * zeta,
-            Scheme::Listed(MethodId::ExplicitEuler) => 2.0 / (zeta + (zeta * zeta - 1.0).sqrt()),
-            Scheme::Listed(MethodId::SemiImplicitEuler) => 2.0 * (root - zeta),
-            Scheme::Listed(MethodId::VelocityVerlet) => first_failure(|h| verlet_holds(zeta, h)),
-            Scheme::Listed(MethodId::Rk4) => first_failure(|h| rk4_holds(zeta, h)),
-            Scheme::Listed(MethodId::ImplicitEuler | MethodId::ImplicitMidpoint) => f64::INFINITY,
+        let Scheme::Listed(method) = self else { return 2.0 * (zeta.hypot(1.0) + zeta) };
+        let scene = DampedOscillator { mass: 1.0, stiffness: 1.0, zeta, ..DampedOscillator::default() };
+        match (&scene as &dyn Scene).expected_limit(method) {
+            Some((StabilityLimit::NoStep, _)) => 0.0,
+            Some((StabilityLimit::Below(h_s), _)) => h_s,
+            Some((StabilityLimit::Unlimited, _)) | None => f64::INFINITY,
         }
-    }
-}
-
-/// Jury's conditions for velocity Verlet, whose second force is taken at v + h a. With c = 1 - 2 zeta h:
-/// x1 = (1 - h^2/2) x + h (1 - zeta h) v, v1 = -(h/2) (c + 1 - h^2/2) x + (1 - zeta h - zeta h c - (h^2/2) (1 - zeta h)) v.
-fn verlet_holds(zeta: f64, h: f64) -> bool {
-    let (half, d) = (0.5 * h * h, zeta * h);
-    let c = 1.0 - 2.0 * d;
-    let (a, b) = (1.0 - half, h * (1.0 - d));
-    let (e, f) = (-0.5 * h * (c + 1.0 - half), 1.0 - d - d * c - half * (1.0 - d));
-    let (trace, det) = (a + f, a * f - b * e);
-    det.abs() <= 1.0 + SLACK && trace.abs() <= 1.0 + det + SLACK
-}
-
-/// |R(h lambda)| <= 1, lambda = -zeta +- sqrt(zeta^2 - 1), R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24.
-fn rk4_holds(zeta: f64, h: f64) -> bool {
-    let d = zeta * zeta - 1.0;
-    let root = d.abs().sqrt();
-    let lambdas = if d < 0.0 { [(-zeta, root), (-zeta, -root)] } else { [(-zeta - root, 0.0), (-zeta + root, 0.0)] };
-    lambdas.iter().all(|&(re, im)| modulus(stability_function(MethodId::Rk4, (re * h, im * h))) <= 1.0 + SLACK)
-}
-
-/// A few roundings of a number near one.
-const SLACK: f64 = 1e-14;
-
-/// The first h at which `holds` fails, to rounding; infinite where it holds up to 16.
-fn first_failure(holds: impl Fn(f64) -> bool) -> f64 {
-    let at = |i: u32| f64::from(i) / 128.0;
-    match (1..=16 * 128).find(|&i| !holds(at(i))) {
-        Some(i) => super::amplification::boundary(at(i - 1), at(i), holds),
-        None => f64::INFINITY,
     }
 }
 
@@ -143,21 +110,14 @@ pub fn modulus((re, im): (f64, f64)) -> f64 {
     re.hypot(im)
 }
 
-/// R(z) of a method on y' = lambda y, z = h lambda. Semi-implicit Euler and Verlet have none: there is no second half to
-/// take new. They are given as what they do to the velocity, explicit Euler and Heun.
+/// R(z) of a method on y' = lambda y, z = h lambda: what a step does to a velocity that no position acts on. NaN where it is
+/// not known.
 pub fn stability_function(method: MethodId, (x, y): (f64, f64)) -> (f64, f64) {
-    let horner = |p: (f64, f64), k: f64| (1.0 + (x * p.0 - y * p.1) / k, (x * p.1 + y * p.0) / k);
-    let over = |(a, b): (f64, f64), (c, d): (f64, f64)| {
-        let n = c * c + d * d;
-        ((a * c + b * d) / n, (b * c - a * d) / n)
-    };
-    match method {
-        MethodId::ExplicitEuler | MethodId::SemiImplicitEuler => (1.0 + x, y),
-        MethodId::VelocityVerlet => [2.0, 1.0].into_iter().fold((1.0, 0.0), horner),
-        MethodId::Rk4 => [4.0, 3.0, 2.0, 1.0].into_iter().fold((1.0, 0.0), horner),
-        MethodId::ImplicitEuler => over((1.0, 0.0), (1.0 - x, -y)),
-        MethodId::ImplicitMidpoint => over((1.0 + 0.5 * x, 0.5 * y), (1.0 - 0.5 * x, -0.5 * y)),
-    }
+    let r = method
+        .facts()
+        .linear
+        .map_or(Complex::new(f64::NAN, f64::NAN), |linear| linear.velocity().at(Complex::new(x, y)));
+    (r.re, r.im)
 }
 
 struct Sizes {

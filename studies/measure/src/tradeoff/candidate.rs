@@ -4,7 +4,6 @@ use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Storage};
 use reports::Marker;
 
-use crate::rotation::orders::is_rigid;
 use crate::study::color_of;
 use scenes::any::AnyScene;
 use scenes::observation::Observation;
@@ -32,8 +31,7 @@ pub struct Span {
 
 /// Every way to move a scene with one of the methods. The steps that exist for rigid bodies only come with the full list.
 pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId]) -> Vec<Candidate> {
-    let is_rigid = is_rigid(scene);
-    if is_rigid { for_bodies(methods) } else { methods.iter().map(|&method| Candidate::flat(method)).collect() }
+    if scene.is_rigid() { for_bodies(methods) } else { methods.iter().map(|&method| Candidate::flat(method)).collect() }
 }
 
 fn for_bodies(methods: &[MethodId]) -> Vec<Candidate> {
@@ -76,10 +74,7 @@ impl Candidate {
 
     /// The name of the rule alone, whatever is stored.
     pub fn rule_id(self) -> &'static str {
-        match self.scheme.rule {
-            Rule::General(method) => method.id(),
-            Rule::Rigid(step) => step.id(),
-        }
+        self.scheme.facts().id
     }
 
     /// The general method, if it is one.
@@ -107,13 +102,7 @@ impl Candidate {
 
     /// Evaluations of the force law in a step, where the formula says so: an implicit step takes as many as it needs.
     pub fn evaluations_a_step(self) -> Option<u64> {
-        match self.scheme.rule {
-            Rule::General(MethodId::ExplicitEuler | MethodId::SemiImplicitEuler) => Some(1),
-            Rule::General(MethodId::VelocityVerlet) => Some(2),
-            Rule::General(MethodId::Rk4) => Some(4),
-            Rule::General(MethodId::ImplicitEuler | MethodId::ImplicitMidpoint) => None,
-            Rule::Rigid(step) => Some(step.evaluations()),
-        }
+        self.scheme.facts().evaluations
     }
 
     /// One observed run; `None` for a step that the scene, which is no rigid body, cannot take.
@@ -135,10 +124,11 @@ impl Candidate {
     /// Whether [`Self::time`] has code for it, or, in double-double, the observed run stands in.
     pub fn is_timed(self, precision: Precision) -> bool {
         let of_body = !self.is_rigid || self.scheme.storage != Storage::WorldOmega;
+        let is_core = self.method().is_none_or(MethodId::is_core);
         match precision {
             Precision::DoubleDouble => true,
-            Precision::F64 => of_body || !self.scheme.is_implicit(),
-            Precision::F32 => of_body && !self.scheme.is_implicit(),
+            Precision::F64 => is_core && (of_body || !self.scheme.is_implicit()),
+            Precision::F32 => is_core && of_body && !self.scheme.is_implicit(),
         }
     }
 

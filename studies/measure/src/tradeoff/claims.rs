@@ -85,25 +85,12 @@ fn vanish(row: &Row) -> Claim {
     claim(&format!("vanish.{}.{height}", row.precision.id()), texts, [Evidence::is(holds)])
 }
 
-/// Scenes for which the models of rounding do not hold: a motion that forgets its errors, errors that jump with every bounce, and
-/// an angle that grows all the time, so that its largest value is not the size of a number that is rounded.
-const UNSUITED: [&str; 7] = [
-    "linear-drag",
-    "quadratic-drag/fall",
-    "quadratic-drag/rise",
-    "damped-oscillator",
-    "damped-oscillator/critical",
-    "damped-oscillator/over-damped",
-    "pendulum/rotation",
-];
-
 /// The yardsticks, and of a rigid body what is stored in the body frame.
 fn is_judged(minimum: &Minimum) -> bool {
     use MethodId::{Rk4, SemiImplicitEuler, VelocityVerlet};
     let method = Candidate::from_id(&minimum.method).filter(|_| !minimum.method.ends_with("/world-omega"));
     let is_yardstick = |m| matches!(m, SemiImplicitEuler | VelocityVerlet | Rk4);
-    !minimum.scene.starts_with("bouncing-ball")
-        && !UNSUITED.contains(&minimum.scene.as_str())
+    scenes::by_id(&minimum.scene).is_ok_and(|scene| scene.scene().rounding_accumulates())
         && method.and_then(Candidate::method).is_some_and(is_yardstick)
 }
 

@@ -97,6 +97,9 @@ const STALLED: usize = 6;
 /// A least error above this part of the motion's size may be one far from convergence.
 const CONVERGING: f64 = 0.1;
 
+/// Roundings of all steps, all one way, may grow by this factor until they are seen.
+const AMPLIFIED: f64 = 1e3;
+
 /// One run with so many steps, and its largest error over all of them.
 pub fn watched(need: &Need<'_>, candidate: Candidate, precision: Precision, steps: u64) -> Tried {
     let run = |watch: &Watch<'_, '_>| {
@@ -164,7 +167,7 @@ pub fn search(need: &Need<'_>, candidate: Candidate, precision: Precision) -> Se
         }
         let (kept, searched) = (need.is_met(&tried), tried.steps);
         let least = least(&doubled);
-        if !kept && is_stalled(&doubled, least, need.truth.scale()) {
+        if !kept && is_stalled(&doubled, least, precision.epsilon(), need.truth.scale()) {
             return Search::Never { least: least.map(|(_, least)| least), searched };
         }
         let is_converging = tried.error.is_some_and(|error| error < CONVERGING * need.truth.scale());
@@ -213,11 +216,11 @@ fn narrow(need: &Need<'_>, first: u64, run: impl Fn(u64) -> Tried) -> Option<Tri
     }
 }
 
-/// Whether the error has ceased to fall, at a level at which a method converges.
-fn is_stalled(doubled: &[Tried], least: Option<(usize, Tried)>, scale: f64) -> bool {
-    least.is_some_and(|(i, least)| {
-        i + STALLED < doubled.len() && least.error.is_some_and(|error| error < CONVERGING * scale)
-    })
+/// Whether the error has ceased to fall, at a level at which a method converges and that so many roundings explain.
+fn is_stalled(doubled: &[Tried], least: Option<(usize, Tried)>, epsilon: f64, scale: f64) -> bool {
+    let steps = doubled.last().map_or(0.0, |tried| tried.steps as f64);
+    let rounding = (AMPLIFIED * epsilon * steps).min(CONVERGING) * scale;
+    least.is_some_and(|(i, least)| i + STALLED < doubled.len() && least.error.is_some_and(|error| error < rounding))
 }
 
 /// The run with the least error, and its place; `None` where every run failed.

@@ -13,17 +13,6 @@ use crate::stability::answer::significant;
 use crate::study::short;
 use scenes::any::AnyScene;
 
-/// Scenes whose motion does not go round or to and fro, so that no period of theirs can be told.
-const APERIODIC: [&str; 7] = [
-    "constant-force",
-    "linear-drag",
-    "quadratic-drag/fall",
-    "quadratic-drag/rise",
-    "damped-oscillator/critical",
-    "damped-oscillator/over-damped",
-    "bouncing-ball",
-];
-
 /// Writes the answer about one scene and returns the best pick.
 pub(super) fn answer(asked: &Asked<'_>, mut entries: Vec<Entry>, text: &mut String) -> Option<Pick> {
     entries.sort_by(|a, b| {
@@ -137,7 +126,7 @@ fn counted(number: u64, of: &str) -> String {
 
 fn in_a_period(scene: &dyn AnyScene, h_s: f64) -> String {
     let scale = scene.scene().info().time_scale_s;
-    if APERIODIC.contains(&scene.id()) {
+    if !scene.scene().is_periodic() {
         format!("{} in its time scale of {} s", short(Some(scale / h_s)), significant(scale))
     } else {
         let in_period = TAU * scale / h_s;

@@ -305,6 +305,14 @@ impl Scene for BouncingBall {
         (0..self.bounces(end_s)).map(|n| at(n).value().to_f64()).collect()
     }
 
+    fn is_periodic(&self) -> bool {
+        false
+    }
+
+    fn rounding_accumulates(&self) -> bool {
+        false
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let mass = fx128::lit(self.mass);

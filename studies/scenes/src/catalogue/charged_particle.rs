@@ -201,6 +201,7 @@ impl Scene for ChargedParticle {
                 seen_after_s: 0.0,
                 reason: "v^2 is a quadratic invariant, conserved exactly",
             },
+            _ => return None,
         };
         (balance == Balance::Energy && self.is_a_circle()).then_some(growth)
     }
@@ -213,6 +214,7 @@ impl Scene for ChargedParticle {
                 (StabilityLimit::Below(8.0_f64.sqrt() / self.gyration()), "|R(i z)|^2 = 1 - z^6/72 + z^8/576")
             }
             MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => (StabilityLimit::Unlimited, "A-stable"),
+            _ => return None,
         })
     }
 }

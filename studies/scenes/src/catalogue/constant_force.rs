@@ -83,6 +83,10 @@ impl Scene for ConstantForce {
         answerable::range("constant-force", self, &seen, end_s)
     }
 
+    fn is_periodic(&self) -> bool {
+        false
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let mass = fx128::lit(self.mass);
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));

@@ -105,6 +105,14 @@ impl Scene for DampedOscillator {
         answerable::range("damped-oscillator", self, &seen, end_s)
     }
 
+    fn is_periodic(&self) -> bool {
+        self.zeta < 1.0
+    }
+
+    fn rounding_accumulates(&self) -> bool {
+        self.zeta == 0.0
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let twice = fx128::lit(self.mass) * v * v + fx128::lit(self.stiffness) * x * x;
@@ -116,6 +124,6 @@ impl Scene for DampedOscillator {
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
-        Some(self.oscillation().stability_limit(method))
+        self.oscillation().stability_limit(method)
     }
 }

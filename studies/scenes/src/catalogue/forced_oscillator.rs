@@ -121,6 +121,6 @@ impl Scene for ForcedOscillator {
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {
         // At resonance the motion itself grows; the limit is that of the free part, as for every linear equation.
-        Some(self.oscillation().stability_limit(method))
+        self.oscillation().stability_limit(method)
     }
 }

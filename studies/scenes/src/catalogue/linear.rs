@@ -66,7 +66,7 @@ impl Linear {
             return Theory::usual(method);
         }
         let n = self.start.len() / 2;
-        let (error, size) = self.error_constants(method, t_s);
+        let Some((error, size)) = self.error_constants(method, t_s) else { return Theory::usual(method) };
         let first = if quantity == Quantity::Position { 0 } else { n };
         let constant = error.rows(first, n).norm();
         let reason = "the method's local error, propagated by the linear equations of motion";
@@ -79,11 +79,11 @@ impl Linear {
         size * t_s <= MOST_PHASE && size.powi(5) * self.start.amax().max(1.0) < f64::MAX.sqrt()
     }
 
-    /// e(T), and what the terms of d amount to at the start without their signs.
-    fn error_constants(&self, method: MethodId, t_s: f64) -> (DVector<f64>, f64) {
+    /// e(T), and what the terms of d amount to at the start without their signs; `None` where d is not known.
+    fn error_constants(&self, method: MethodId, t_s: f64) -> Option<(DVector<f64>, f64)> {
         let (dim, wide) = (self.start.len(), self.start.len() + 2);
         let extended = self.extended();
-        let d = self.local_error(method, &extended);
+        let d = self.local_error(method, &extended)?;
         let mut y = DVector::zeros(wide);
         y.rows_mut(0, dim).copy_from(&self.start);
         y[dim] = 1.0;
@@ -94,7 +94,7 @@ impl Linear {
         block.view_mut((dim, dim), (wide, wide)).copy_from(&extended);
         let flow = (block * t_s).exp();
         let size = (d.abs() * y.abs()).norm();
-        (flow.view((0, dim), (dim, wide)) * y, size)
+        Some((flow.view((0, dim), (dim, wide)) * y, size))
     }
 
     /// Y of y' = Y y.
@@ -108,8 +108,8 @@ impl Linear {
         y
     }
 
-    /// d as a matrix that acts on y.
-    fn local_error(&self, method: MethodId, extended: &DMatrix<f64>) -> DMatrix<f64> {
+    /// d as a matrix that acts on y, where it is known.
+    fn local_error(&self, method: MethodId, extended: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let (a, dim) = (&self.a, self.start.len());
         let n = dim / 2;
         let power = |k: u32| (0..k).fold(DMatrix::identity(dim + 2, dim + 2), |p, _| p * extended);
@@ -123,14 +123,15 @@ impl Linear {
             d
         };
         let (q, v) = (|k| z(k).rows(0, n).into_owned(), |k| z(k).rows(n, n).into_owned());
-        match method {
+        Some(match method {
             MethodId::ExplicitEuler => z(2) * -0.5,
             MethodId::ImplicitEuler => z(2) * 0.5,
             MethodId::SemiImplicitEuler => halves(q(2) * 0.5, v(2) * -0.5),
             MethodId::VelocityVerlet => halves(q(3) / -6.0, v(3) / 12.0 - a.view((n, n), (n, n)) * v(2) * 0.25),
             MethodId::ImplicitMidpoint => z(3) / -24.0 + a * z(2) / 8.0,
             MethodId::Rk4 => a * a * a * z(2) / -120.0 + a * a * g(2) / 480.0 - a * g(3) / 720.0 + g(4) / 2880.0,
-        }
+            _ => return None,
+        })
     }
 }
 
@@ -143,21 +144,14 @@ const ROUNDING: f64 = 1e-13;
 /// End of RK4's stability interval on the negative real axis: the root of 1 - x/2 + x^2/6 - x^3/24 = 0, so that R(-x) = 1.
 pub(crate) const RK4_REAL: f64 = 2.785_293_563_405_282;
 
-/// |R(h lambda)|^2 - 1 of RK4, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24.
-pub(crate) fn rk4_excess(re: f64, im: f64) -> f64 {
-    let horner = |(x, y): (f64, f64), k: f64| (1.0 + (re * x - im * y) / k, (re * y + im * x) / k);
-    let (x, y) = [4.0, 3.0, 2.0, 1.0].into_iter().fold((1.0, 0.0), horner);
-    x * x + y * y - 1.0
-}
-
-/// The first h > 0 at which `excess(h)` turns positive, by steps of `scale_s` / 256 and bisection; none up to 16 `scale_s`.
-pub(crate) fn first_failure(scale_s: f64, excess: impl Fn(f64) -> f64) -> StabilityLimit {
+/// The first h > 0 at which a step `fails`, by steps of `scale_s` / 256 and bisection; none up to 16 `scale_s`.
+pub(crate) fn first_failure(scale_s: f64, fails: impl Fn(f64) -> bool) -> StabilityLimit {
     let at = |i: u32| scale_s * f64::from(i) / 256.0;
-    let Some(i) = (1..=16 * 256).find(|&i| excess(at(i)) > 0.0) else { return StabilityLimit::Unlimited };
+    let Some(i) = (1..=16 * 256).find(|&i| fails(at(i))) else { return StabilityLimit::Unlimited };
     let (mut low, mut high) = (at(i - 1), at(i));
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if excess(middle) > 0.0 {
+        if fails(middle) {
             high = middle;
         } else {
             low = middle;

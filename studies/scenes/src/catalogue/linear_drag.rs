@@ -114,6 +114,14 @@ impl Scene for LinearDrag {
         answerable::range("linear-drag", self, &seen, end_s)
     }
 
+    fn is_periodic(&self) -> bool {
+        false
+    }
+
+    fn rounding_accumulates(&self) -> bool {
+        false
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let mass = fx128::lit(self.mass);
@@ -136,6 +144,7 @@ impl Scene for LinearDrag {
             MethodId::VelocityVerlet => (below(2.0), "|1 - z + z^2/2| <= 1, z = k h"),
             MethodId::Rk4 => (below(RK4_REAL), "|R(-k h)| <= 1 on the real axis"),
             MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => (StabilityLimit::Unlimited, "A-stable"),
+            _ => return None,
         })
     }
 }

@@ -182,6 +182,11 @@ impl Scene for Pendulum {
         answerable::range("pendulum", self, &seen, end_s)
     }
 
+    /// Not where it goes round and round, and its angle grows.
+    fn rounding_accumulates(&self) -> bool {
+        self.omega.abs() <= 2.0 * self.omega0().to_f64() * (0.5 * self.angle).cos().abs()
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (angle, rate) = (seen.vector(Quantity::Attitude)[0], seen.vector(Quantity::AngularVelocity)[0]);
         let (length, mass) = (fx128::lit(self.length), fx128::lit(self.mass));

@@ -124,6 +124,10 @@ impl Scene for PrincipalAxisTorque {
         answerable::phase("principal-axis-torque", most, phase, end_s)
     }
 
+    fn turns_about_one_axis(&self) -> bool {
+        true
+    }
+
     fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
         let start = unit_quaternion(self.attitude);
         let torque = start.rotate(self.along_axis(fx128::lit(self.torque)));

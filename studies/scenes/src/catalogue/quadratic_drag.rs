@@ -192,6 +192,14 @@ impl Scene for QuadraticDrag {
         self.apex_s().into_iter().filter(|&apex| apex <= end_s).collect()
     }
 
+    fn is_periodic(&self) -> bool {
+        false
+    }
+
+    fn rounding_accumulates(&self) -> bool {
+        false
+    }
+
     fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let mass = fx128::lit(self.mass);
@@ -231,6 +239,7 @@ impl Scene for QuadraticDrag {
             MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => {
                 (StabilityLimit::Unlimited, "A-stable, at the terminal velocity")
             }
+            _ => return None,
         })
     }
 }

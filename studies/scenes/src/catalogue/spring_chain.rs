@@ -223,6 +223,7 @@ impl Scene for SpringChain {
             MethodId::SemiImplicitEuler | MethodId::VelocityVerlet => (below(2.0), "w h <= 2 in the stiffest mode"),
             MethodId::Rk4 => (below(8.0_f64.sqrt()), "w h <= sqrt(8) in the stiffest mode"),
             MethodId::ImplicitEuler | MethodId::ImplicitMidpoint => (StabilityLimit::Unlimited, "A-stable"),
+            _ => return None,
         })
     }
 }
