@@ -6,7 +6,7 @@ mod limit;
 mod orders;
 mod rounding;
 
-pub use limit::{Limit, judge, limit};
+pub use limit::{Approach, Limit, judge, limit};
 pub use orders::{Measure, OrderRow, orders, tolerance};
 
 use integrator::methods::MethodId;
