@@ -48,6 +48,7 @@ pub(super) fn order_of(first: &Row, measure: Measure, samples: &[Sample]) -> Ord
         constant: Some(fine_top).filter(|x| x.is_finite()),
         constant_change: None,
         coarse_constant: coarse_top,
+        fine_constant: fine_top,
         theory_constant: if measure == Measure::End { first.theory_constant } else { None },
         theory_doubt: first.theory_doubt,
         leading: None,

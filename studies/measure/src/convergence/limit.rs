@@ -15,20 +15,35 @@ pub struct Limit {
     pub bound: f64,
 }
 
-/// The limit from three neighbouring runs: c(h) = C + d h + ..., and the line through two steps meets h = 0 at C. The bound is
-/// what the extrapolation changes, what it changed since the pair before, and `rounding` of the errors. The finest runs whose
-/// rounding is below the change serve; where there are none, those with the least bound.
-pub fn limit(samples: &[Sample], p: f64, rounding: impl Fn(&Sample) -> f64) -> Option<Limit> {
+/// How the ratio error / h^p of a sweep comes to its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Approach {
+    /// As C + d h + e h^2: an error at one time.
+    Smooth,
+    /// As the largest of several such: it may change from one of them to another.
+    Largest,
+}
+
+/// The limit from three neighbouring runs, by the parabola through them; of a largest error by the line through the finer two. The
+/// bound is what the coarser run changes, and `rounding` of the errors. The finest runs whose rounding is below that change serve;
+/// where there are none, those with the least bound.
+pub fn limit(samples: &[Sample], p: f64, approach: Approach, rounding: impl Fn(&Sample) -> f64) -> Option<Limit> {
     let ratio = |s: &Sample| Some(s.error.filter(|e| e.is_finite())? / s.h_s.powf(p));
     let line = |a: &Sample, b: &Sample| {
         let (coarse, fine) = (ratio(a)?, ratio(b)?);
         Some(fine - (coarse - fine) / (a.h_s - b.h_s) * b.h_s)
     };
     let of = |w: &[Sample]| {
-        let (value, before) = (line(&w[1], &w[2])?, line(&w[0], &w[1])?);
-        let change = (value - ratio(&w[2])?).abs();
-        let noise = 2.0 * rounding(&w[2]) / w[2].h_s.powf(p);
-        Some((Limit { value, bound: change + (value - before).abs() + noise }, noise <= change))
+        let (fine, coarse) = (line(&w[1], &w[2])?, line(&w[0], &w[1])?);
+        let noise = WEIGHTS * rounding(&w[2]) / w[2].h_s.powf(p);
+        let (value, change) = match approach {
+            Approach::Smooth => {
+                let value = (w[0].h_s * fine - w[2].h_s * coarse) / (w[0].h_s - w[2].h_s);
+                (value, CHANGES * (value - fine).abs())
+            }
+            Approach::Largest => (fine, CHANGES * ((fine - ratio(&w[2])?).abs() + (fine - coarse).abs())),
+        };
+        Some((Limit { value, bound: change + noise }, noise <= change))
     };
     let all: Vec<(Limit, bool)> = samples.windows(3).rev().filter_map(of).collect();
     let clear = all.iter().find(|(limit, clear)| *clear && limit.bound.is_finite());
@@ -36,52 +51,56 @@ pub fn limit(samples: &[Sample], p: f64, rounding: impl Fn(&Sample) -> f64) -> O
     clear.or_else(least).map(|(limit, _)| *limit)
 }
 
+/// Sum of the sizes of the weights (8, -6, 1) / 3 of three halved steps.
+const WEIGHTS: f64 = 5.0;
+/// What is left is bounded by this many times the last change, for sweeps that are not far into their limit.
+const CHANGES: f64 = 3.0;
 /// The part of a limit to which it is resolved: a wrong constant would be seen.
-const RESOLVED: f64 = 0.1;
-/// By how much error / h^p has to fall over a sweep before it is taken to vanish.
-const VANISHED: f64 = 0.25;
-/// An order that is this much too low over the finest runs is too low.
-const TOO_LOW: f64 = 0.5;
+const RESOLVED: f64 = 0.3;
+/// Half an order: where the finest runs fall by so much faster, or slower, than the order of theory, it is not theirs.
+const HALF: f64 = 0.5;
 /// Runs with steps longer than this part of the time scale may fail without a fault of the method.
 const COARSE: f64 = 0.25;
 
 /// Whether one sweep shows what theory says.
 pub fn judge(o: &OrderRow) -> Evidence {
-    if o.theory_order.is_none() || o.theory_is_envelope {
+    let Some(p) = o.theory_order.filter(|_| !o.theory_is_envelope) else {
         return Evidence::is(o.verdict.passes());
-    }
-    let known = o.leading.zip(o.leading_doubt);
-    match (known, o.constant.zip(o.constant_change)) {
-        (Some((theory, doubt)), Some((value, change))) => {
-            // Three times the change covers a sweep that is not far into its limit, or whose largest error moves from one checkpoint
-            // to another. Errors are lengths: a limit below zero is that of an error that has yet to change its sign.
-            let (value, allowed) = (value.abs(), 3.0 * change + doubt + ROUNDING * theory);
-            let seen = allowed <= RESOLVED * theory.max(value) || allowed + value <= VANISHED * o.coarse_constant;
-            if (value - theory).abs() > allowed {
-                Evidence::Outside
-            } else if seen || o.verdict.passes() || o.is_rounding {
-                Evidence::Inside
-            } else {
-                Evidence::Undecided
-            }
-        }
-        _ => without_constant(o),
+    };
+    let (Some((theory, doubt)), Some((value, bound))) =
+        (o.leading.zip(o.leading_doubt), o.constant.zip(o.constant_change))
+    else {
+        return without_constant(o, p);
+    };
+    // Errors are lengths: a limit below zero is that of an error that has yet to change its sign.
+    let (value, allowed) = (value.abs(), bound + doubt + ROUNDING * theory);
+    let resolved = allowed <= RESOLVED * theory.max(value);
+    let vanished = value <= allowed && o.finest_order.is_some_and(|order| order >= p + HALF);
+    if (value - theory).abs() > allowed {
+        if resolved || is_too_low(o, p) { Evidence::Outside } else { Evidence::Undecided }
+    } else if o.is_rounding || resolved || vanished {
+        Evidence::Inside
+    } else {
+        Evidence::Undecided
     }
 }
 
+/// Whether error / h^p grows to the finest runs, by half an order or more: of a lower order, or of another limit.
+fn is_too_low(o: &OrderRow, p: f64) -> bool {
+    o.finest_order.is_some_and(|order| order <= p - HALF) && o.fine_constant >= 0.9 * o.coarse_constant
+}
+
 /// The verdict where theory knows an order and no constant: at least this order. No method is exact by mistake.
-fn without_constant(o: &OrderRow) -> Evidence {
+fn without_constant(o: &OrderRow, p: f64) -> Evidence {
     match o.verdict {
         Verdict::AsExpected | Verdict::Exact | Verdict::SuperConvergent => Evidence::Inside,
         _ if o.is_rounding => Evidence::Inside,
         // The finest run finished, or even that was coarse: nothing is said of finer ones.
         Verdict::Failed if o.coarsest_failure_h_s.is_none_or(|h| h > COARSE * o.time_scale_s) => Evidence::Undecided,
         Verdict::Failed => Evidence::Outside,
-        Verdict::Capped | Verdict::NotAsymptotic | Verdict::AtTheFloor => match (o.finest_order, o.theory_order) {
-            (Some(order), Some(p)) if order >= p - o.tolerance => Evidence::Inside,
-            (Some(order), Some(p)) if order <= p - TOO_LOW => Evidence::Outside,
-            _ => Evidence::Undecided,
-        },
+        _ if o.finest_order.is_some_and(|order| order >= p - o.tolerance) => Evidence::Inside,
+        _ if is_too_low(o, p) => Evidence::Outside,
+        _ => Evidence::Undecided,
     }
 }
 

@@ -7,7 +7,7 @@ mod order_row;
 mod orders;
 mod rounding;
 
-pub use limit::{Limit, judge, limit};
+pub use limit::{Approach, Limit, judge, limit};
 pub use order_row::{Measure, OrderRow};
 pub use orders::{orders, tolerance};
 

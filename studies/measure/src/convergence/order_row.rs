@@ -63,6 +63,8 @@ pub struct OrderRow {
     pub constant_change: Option<f64>,
     /// The largest error / h^theory_order of the sweep.
     pub coarse_constant: f64,
+    /// The same of the finest run that is clear of rounding.
+    pub fine_constant: f64,
     /// What theory predicts for the limit.
     pub theory_constant: Option<f64>,
     /// How far that may be off.

@@ -2,7 +2,7 @@
 
 use reports::{Claim, Table};
 
-use super::limit::{ROUNDING, judge, limit};
+use super::limit::{Approach, ROUNDING, judge, limit};
 use super::order_row::{Measure, OrderRow, finest_order};
 use super::{HALVINGS, Row, envelope};
 use crate::claim::{Evidence, claim};
@@ -74,7 +74,8 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
     let steps = |s: &Sample| (first.h_s * first.steps as f64) / s.h_s;
     let rounding = |s: &Sample| s.floor.max(ROUNDINGS * steps(s) * unit);
-    let limit = first.theory_order.and_then(|p| limit(comparable(&samples, sweep, measure), p, rounding));
+    let approach = if measure == Measure::End { Approach::Smooth } else { Approach::Largest };
+    let limit = first.theory_order.and_then(|p| limit(comparable(&samples, sweep, measure), p, approach, rounding));
     let ratio = |s: &Sample| s.error.map(|e| e / s.h_s.powf(first.theory_order.unwrap_or(0.0)));
     let (theory_constant, theory_doubt, leading) = match measure {
         Measure::End => (first.theory_constant, first.theory_doubt, first.leading_end),
@@ -102,6 +103,11 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         constant: limit.map(|l| l.value),
         constant_change: limit.map(|l| l.bound),
         coarse_constant: samples.iter().filter_map(ratio).filter(|r| r.is_finite()).fold(0.0, f64::max),
+        fine_constant: samples
+            .iter()
+            .rfind(|s| s.error.is_some_and(|e| e.is_finite() && e > rounding(s)))
+            .and_then(ratio)
+            .unwrap_or(0.0),
         theory_constant,
         theory_doubt,
         leading,
@@ -235,14 +241,12 @@ fn is_judged(o: &OrderRow) -> bool {
 fn constant_claim(o: &OrderRow) -> Option<Claim> {
     // An envelope has a claim of its own.
     let theory = o.theory_constant.filter(|_| !o.theory_is_envelope)?;
-    // What is left where each change of the extrapolation is at least a quarter smaller than the one before.
-    let left = |change: f64| 3.0 * change;
-    let bound = o.constant_change.map_or(f64::NAN, |change| left(change) + o.theory_doubt + ROUNDING * theory);
+    let bound = o.constant_change.map_or(f64::NAN, |change| change + o.theory_doubt + ROUNDING * theory);
     let texts = [
         format!("the {} error of {} on {} has the constant of theory", o.quantity.id(), o.method, o.scene),
         format!("{theory:.9e} {}/s^{}", o.unit, o.theory_order.unwrap_or(0.0)),
         o.constant.map_or_else(|| "none".to_owned(), |x| format!("{x:.9e}")),
-        format!("+- {bound:.1e}, three times the change of the last extrapolation"),
+        format!("+- {bound:.1e}, what the extrapolation may leave"),
     ];
     // Too few runs, too coarse ones, or errors at the floor have no window to extrapolate from.
     let evidence = o.constant.map_or(Evidence::Undecided, |x| Evidence::near(Some(x.abs()), Some(theory), bound));

@@ -6,7 +6,7 @@ use integrator::rigid_body::{AttitudeUpdate, Storage};
 use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
-use crate::convergence::limit;
+use crate::convergence::{Approach, limit};
 use crate::order::Sample;
 use crate::study::{Selection, distinct};
 use crate::sweep::in_parallel;
@@ -50,7 +50,7 @@ impl Known {
     }
 
     /// lim error / h^p of theory: of what stores the world's angular velocity, and of semi-implicit Euler in either frame.
-    fn constant(&self, scheme: Scheme, quantity: Quantity) -> Option<f64> {
+    fn constant(&self, scheme: Scheme, quantity: Quantity) -> Option<&Leading> {
         let Rule::General(method) = scheme.rule else { return None };
         let is_known = match scheme.storage {
             Storage::WorldOmega => method.order() == 1 || scheme.update == AttitudeUpdate::Exponential,
@@ -58,7 +58,7 @@ impl Known {
             _ => false,
         };
         let of = |one: &&Leading| (one.method, one.quantity) == (method, quantity);
-        self.leading.iter().find(of).filter(|_| is_known).map(|one| one.end)
+        self.leading.iter().find(of).filter(|_| is_known)
     }
 }
 
@@ -102,8 +102,9 @@ fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Ve
             theory: if is_wrong {
                 Some(known.without)
             } else {
-                known.constant(scheme, quantity).map(|c| c * h_s.powf(order))
+                known.constant(scheme, quantity).map(|c| c.end * h_s.powf(order))
             },
+            tolerance: known.constant(scheme, quantity).map(|c| c.doubt * h_s.powf(order)),
             theory_order: (!exact).then_some(order),
             ..row.measured(quantity.id(), quantity.unit(), error(quantity))
         })
@@ -205,12 +206,13 @@ fn agrees(sweep: &[&Row], extrapolated: Option<(f64, f64)>, points: &[(f64, f64)
     if points.iter().all(|(_, e)| *e <= FLOOR) {
         return Some(true);
     }
+    let doubted = sweep.last().and_then(|row| Some(row.tolerance? / row.h_s.powf(p))).unwrap_or(0.0);
     let constant = sweep.last().and_then(|row| Some(row.theory? / row.h_s.powf(p)));
     let samples: Vec<Sample> = points.iter().map(|&(h_s, e)| Sample { h_s, error: Some(e), floor: 0.0 }).collect();
-    let limit = limit(&samples, p, |_| FLOOR / 16.0);
+    let limit = limit(&samples, p, Approach::Smooth, |_| FLOOR / 16.0);
     match (constant, limit) {
         (Some(constant), Some(limit)) => {
-            let right = (limit.value.abs() - constant).abs() <= 3.0 * limit.bound + 1e-9 * constant;
+            let right = (limit.value.abs() - constant).abs() <= limit.bound + doubted + 1e-9 * constant;
             Some(right)
         }
         // Local orders that differ by so much are none.
