@@ -147,13 +147,14 @@ impl<T: Single> RigidMotion<T> for Manufactured {
 
 impl Scene for Manufactured {
     fn info(&self) -> Info {
-        let pace = Pace { horizon_s: 1.75, coarsest_steps: 4 }.at(self.rate() / 1.5);
+        let faster = self.rate() / Self::default().rate();
+        let pace = Pace { horizon_s: 1.75, coarsest_steps: 4 }.at(faster);
         Info {
             about: "a prescribed motion of a rigid body under loads that depend on everything: no term goes untested",
             equation: r"m\,\ddot{\mathbf x} = \mathbf F(t, \mathbf x, \mathbf v, q),\quad I\,\dot{\omega} = I\omega\times\omega + \tau(t, \mathbf x, \mathbf v, q, \omega)",
             source: "manufactured solution (Roache 2002)",
             horizon_s: pace.horizon_s,
-            time_scale_s: time_scale(self.rate()),
+            time_scale_s: time_scale(1.5 * faster),
             coarsest_steps: pace.coarsest_steps,
         }
     }
