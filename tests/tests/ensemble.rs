@@ -189,7 +189,7 @@ fn first(rows: &[Row], method: MethodId, quantity: Quantity) -> &Row {
 // Fails if: a failed member scores as 0, or is left out of the count.
 #[test]
 fn failed_members_are_counted_and_never_scored() {
-    let mut plan = selection("linear-drag", &IN_LANES, &[16]);
+    let mut plan = Selection { end_s: Some(2.25), ..selection("linear-drag", &IN_LANES, &[16]) };
     plan.scenes[0].scene_mut().set("linear-drag", "drag", "1e200").expect("a parameter");
     for row in measure(&plan, 20, 1) {
         assert_eq!((row.members, row.failed, row.worst_member), (20, 20, 0));

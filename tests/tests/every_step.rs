@@ -244,7 +244,8 @@ fn what_has_no_error_is_refused() {
     let question = Question { error: Some(1e-3), ..Question::default() };
     let ask =
         |scene, question| advise(&selection(scene, MethodId::Rk4, Precision::F64), question).map(|advice| advice.text);
-    let driven = ask(scene("forced-oscillator", &[("drive", "1e200")]), question);
+    let second = Question { duration_s: Some(1.0), ..question };
+    let driven = ask(scene("forced-oscillator", &[("drive", "1e200")]), second);
     assert!(!matches!(&driven, Ok(text) if text.contains("met")), "{driven:?}");
     let refused = ask(scene("pendulum", &[]), Question { of: Of::Balance(Balance::Momentum), ..question });
     let message = refused.expect_err("a pendulum has no momentum that is accounted for").to_string();

@@ -131,8 +131,10 @@ fn no_line_is_a_placeholder() {
 #[test]
 fn every_command_of_the_guides_runs_as_it_is_written() {
     let documents = documents();
-    assert_eq!(documents.len(), 4, "{documents:?}");
-    for document in &documents {
+    // These describe, and have nothing to run.
+    let describes = |document: &&PathBuf| ["architecture.md", "columns.md"].iter().any(|name| document.ends_with(name));
+    assert_eq!(documents.iter().filter(|document| !describes(document)).count(), 4, "{documents:?}");
+    for document in documents.iter().filter(|document| !describes(document)) {
         assert!(examples(document).len() > 1, "{} has no commands", document.display());
         run(document);
     }

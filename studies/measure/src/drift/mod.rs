@@ -181,6 +181,9 @@ impl Study for DriftStudy {
     fn check(row: &Row) -> Result<(), String> {
         check_scene(&row.scene)?;
         check_method(&row.method, method_from_id(&row.method).is_ok())?;
+        if !(row.terms >= 0.0 && row.terms.is_finite()) {
+            return Err(format!("'terms' is {}, and a size is finite and not negative", row.terms));
+        }
         check_steps(1, row.h_s)
     }
 }
