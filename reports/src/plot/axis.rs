@@ -2,6 +2,8 @@
 
 use super::ticks::{Tick, ticks};
 use crate::{Axis, Scale};
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged};
+use std::ops::Range;
 
 /// An axis in mapped coordinates: the value itself, or its decimal logarithm.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +44,33 @@ impl AxisMap {
     /// Where a mapped coordinate lies between the ends: 0 to 1 inside, at most one length of the axis outside.
     pub(super) fn fraction(&self, mapped: f64) -> f64 {
         ((mapped - self.low) / (self.high - self.low)).clamp(-1.0, 2.0)
+    }
+
+    /// The place of a mapped coordinate on an axis that is drawn from `start` to `end`.
+    pub(super) fn place(&self, mapped: f64, [start, end]: [f64; 2]) -> f64 {
+        start + self.fraction(mapped) * (end - start)
+    }
+}
+
+/// An axis of a coordinate system of plotters. Its bold points are the labelled ticks, its light ones those between.
+impl Ranged for AxisMap {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, mapped: &f64, (start, end): (i32, i32)) -> i32 {
+        self.place(*mapped, [start.into(), end.into()]).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            self.minor.clone()
+        } else {
+            self.major.iter().map(|tick| tick.at).collect()
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
     }
 }
 

@@ -1,11 +1,13 @@
 //! Maps: cells of colour, and what the colours mean.
 
 use super::axis::AxisMap;
-use super::frame::Frame;
-use super::sheet::{Anchor, Path, Pixel, Rect, Sheet};
+use super::backend::{STYLE, rectangle};
+use super::frame::{Frame, Mapped};
+use super::sheet::{Anchor, Pixel, Rect, Sheet};
 use super::style::area;
 use super::text::wrap;
 use crate::{Axis, Cells, Palette, Scale};
+use plotters::element::Rectangle;
 use std::collections::BTreeMap;
 
 /// The look of a cell without a value: no other map colour is grey.
@@ -81,34 +83,38 @@ fn looks(cells: &Cells) -> Vec<String> {
     cells.values.iter().map(|value| value.and_then(look).unwrap_or_else(|| EMPTY.to_owned())).collect()
 }
 
-/// Edges of the cells on the sheet, cut at the frame.
-fn edges(axis: &AxisMap, ends: [f64; 2], count: usize, place: impl Fn(f64) -> f64) -> Option<Vec<f64>> {
+/// Edges of the cells in mapped coordinates, cut at the frame.
+fn edges(axis: &AxisMap, ends: [f64; 2], count: usize) -> Option<Vec<f64>> {
     let (first, last) = (axis.map_value(ends[0])?, axis.map_value(ends[1])?);
     // Each end has its share, since the difference of two huge ends would be infinite.
     let at = |i: usize| first * (1.0 - i as f64 / count as f64) + last * (i as f64 / count as f64);
-    Some((0..=count).map(|i| place(at(i).clamp(axis.low, axis.high))).collect())
+    Some((0..=count).map(|i| at(i).clamp(axis.low, axis.high)).collect())
 }
 
 /// Runs of equal cells, all those of one look as one path.
 pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, cells: &Cells) {
-    let columns = edges(&frame.x, [cells.x0, cells.x1], cells.nx, |m| frame.column(m));
-    let rows = edges(&frame.y, [cells.y0, cells.y1], cells.ny, |m| frame.row(m));
+    let columns = edges(&frame.x, [cells.x0, cells.x1], cells.nx);
+    let rows = edges(&frame.y, [cells.y0, cells.y1], cells.ny);
     let (Some(columns), Some(rows)) = (columns, rows) else { return };
     let looks = looks(cells);
-    let mut paths: BTreeMap<&str, Path> = BTreeMap::new();
+    let mut areas: BTreeMap<&str, Vec<Rectangle<Mapped>>> = BTreeMap::new();
     for (j, row) in looks.chunks(cells.nx).enumerate() {
         let mut start = 0;
         for run in row.chunk_by(|a, b| a == b) {
             let end = start + run.len();
-            let area = Rect { left: columns[start], right: columns[end], top: rows[j + 1], bottom: rows[j] };
-            if area.width() != 0.0 && area.height() != 0.0 {
-                let path = paths.entry(&run[0]).or_default();
-                *path = std::mem::take(path).rect(area);
+            if columns[start] != columns[end] && rows[j] != rows[j + 1] {
+                let area = Rectangle::new([(columns[start], rows[j]), (columns[end], rows[j + 1])], STYLE);
+                areas.entry(&run[0]).or_default().push(area);
             }
             start = end;
         }
     }
-    paths.iter().for_each(|(look, path)| sheet.tiles(look, path));
+    for (look, areas) in &areas {
+        sheet.tiles(look, |area| {
+            let inside = frame.inside(area);
+            areas.iter().try_for_each(|cell| inside.draw(cell))
+        });
+    }
 }
 
 /// The legend of a map from `at` down, no wider than `width` CSS pixels, beside a frame of that height; gives where it ends.
@@ -132,9 +138,9 @@ pub(super) fn legend(sheet: &mut Sheet, cells: &Cells, (x, top): Pixel, width: f
 }
 
 fn swatch(sheet: &mut Sheet, (x, y): Pixel, look: &str, name: &str, width: f64) -> f64 {
-    let path = Path::default().rect(Rect { left: x, top: y - 6.0, right: x + 16.0, bottom: y + 6.0 });
-    sheet.tiles(look, &path);
-    sheet.path("thin sg", &path);
+    let rect = Rect { left: x, top: y - 6.0, right: x + 16.0, bottom: y + 6.0 };
+    sheet.tiles(look, |area| area.draw(&rectangle(rect)));
+    sheet.rect("thin sg", rect);
     let lines = wrap(name, SIZE, width - 22.0).len();
     sheet.paragraph(name, (x + 22.0, y), SIZE, width - 22.0) + if lines > 0 { STEP - 1.3 * SIZE } else { STEP }
 }
@@ -145,8 +151,8 @@ fn bar(sheet: &mut Sheet, axis: &AxisMap, (x, top): Pixel, height: f64) -> f64 {
     for step in 0..=LEVELS as i32 {
         let fraction = f64::from(step) / LEVELS;
         let (above, below) = ((fraction + 0.5 / LEVELS).min(1.0), (fraction - 0.5 / LEVELS).max(0.0));
-        let area = Rect { left: x, top: row(above), right, bottom: row(below) };
-        sheet.tiles(&level(fraction), &Path::default().rect(area));
+        let rect = Rect { left: x, top: row(above), right, bottom: row(below) };
+        sheet.tiles(&level(fraction), |area| area.draw(&rectangle(rect)));
     }
     sheet.rect("thin sg", Rect { left: x, top, right, bottom });
     for tick in &axis.major {
@@ -189,8 +195,7 @@ mod tests {
     fn on_a_log_axis_cells_have_equal_ratios() {
         let axis = Axis::log("x").with_range(1.0, 100.0);
         let (map, _) = AxisMap::new(&axis, &[], &[]).expect("a proper range");
-        let middle = edges(&map, [1.0, 100.0], 2, |m| 1000.0 * m);
-        assert_eq!(middle, Some(vec![0.0, 1000.0, 2000.0]));
+        assert_eq!(edges(&map, [1.0, 100.0], 2), Some(vec![0.0, 1.0, 2.0]));
     }
 
     #[test]

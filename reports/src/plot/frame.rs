@@ -1,11 +1,20 @@
 //! Where the axes lie on the sheet, and what of the data lies between them.
 
 use super::axis::AxisMap;
+use super::backend::{Area, Backend, tenths};
 use super::clip::{Point, Window, clip_line};
 use super::sheet::{Pixel, Rect};
 use crate::AxisName;
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::drawing::DrawingArea;
 
-/// The area between the axes.
+/// A point as plotters takes it.
+pub(super) type Mapped = (f64, f64);
+
+/// The sheet, on which elements are drawn in the mapped coordinates of two axes.
+pub(super) type Inside<'a> = DrawingArea<Backend<'a>, Cartesian2d<AxisMap, AxisMap>>;
+
+/// The area between the axes, its edges on whole tenths of a pixel.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub(super) area: Rect,
@@ -29,18 +38,29 @@ impl Frame {
     }
 
     pub(super) fn column(&self, x: f64) -> f64 {
-        self.area.left + self.x.fraction(x) * self.area.width()
+        self.x.place(x, [self.area.left, self.area.right])
     }
 
     pub(super) fn row(&self, y: f64) -> f64 {
-        self.area.bottom - self.y.fraction(y) * self.area.height()
+        self.y.place(y, [self.area.bottom, self.area.top])
     }
 
-    /// The visible pieces of a line through data points.
-    pub(super) fn visible(&self, points: &[Point]) -> Vec<Vec<Pixel>> {
+    /// Mapped coordinates on the sheet.
+    pub(super) fn inside<'a>(&self, sheet: &Area<'a>) -> Inside<'a> {
+        let Rect { left, top, right, bottom } = self.area;
+        let place = (tenths(left)..tenths(right), tenths(bottom)..tenths(top));
+        sheet.apply_coord_spec(Cartesian2d::new(self.x.clone(), self.y.clone(), place))
+    }
+
+    /// The visible pieces of a line through data points, in mapped coordinates.
+    pub(super) fn pieces(&self, points: &[Point]) -> Vec<Vec<Point>> {
         let mapped: Vec<_> = points.iter().map(|&p| self.mapped(p)).collect();
-        let pieces = clip_line(&mapped, self.window());
-        pieces.into_iter().map(|piece| piece.into_iter().map(|p| self.pixel(p)).collect()).collect()
+        clip_line(&mapped, self.window())
+    }
+
+    /// The visible pieces of a line through data points, on the sheet.
+    pub(super) fn visible(&self, points: &[Point]) -> Vec<Vec<Pixel>> {
+        self.pieces(points).into_iter().map(|piece| piece.into_iter().map(|p| self.pixel(p)).collect()).collect()
     }
 
     /// The data points inside the frame.

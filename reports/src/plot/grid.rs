@@ -1,11 +1,13 @@
 //! Title, axes and grid, and the frame that they leave for the data.
 
 use super::axis::AxisMap;
+use super::backend::{STYLE, line};
 use super::frame::Frame;
 use super::labels;
-use super::sheet::{Anchor, Path, Rect, Sheet};
+use super::sheet::{Anchor, Rect, Sheet};
 use super::text::{text_width, wrap};
 use crate::{Figure, Scale};
+use plotters::coord::ranged1d::BoldPoints;
 
 const TITLE: f64 = 17.0;
 pub(super) const LABEL: f64 = 14.0;
@@ -33,7 +35,7 @@ pub(super) fn draw(sheet: &mut Sheet, figure: &Figure, [x, y]: [&AxisMap; 2]) ->
     let left = 44.0 + tick_width + LABEL_LINE * y_label.len().saturating_sub(1) as f64;
     let area = Rect { left, top, right: right.max(left + 40.0), bottom: bottom.max(top + 40.0) };
     let area = if figure.equal_axes { equal(area, x, &y) } else { area };
-    let frame = Frame { area, x: fitting(x, area.width()), y };
+    let frame = Frame { area: area.in_tenths(), x: fitting(x, area.width()), y };
     mesh(sheet, &frame);
     let middle = area.middle();
     for (i, line) in x_label.iter().enumerate() {
@@ -66,14 +68,13 @@ fn fitting(axis: &AxisMap, width: f64) -> AxisMap {
 }
 
 fn mesh(sheet: &mut Sheet, frame: &Frame) {
-    let Rect { left, top, right, bottom } = frame.area;
-    let upright = |path: Path, at: f64| path.line(&[(frame.column(at), top), (frame.column(at), bottom)]);
-    let level = |path: Path, at: f64| path.line(&[(left, frame.row(at)), (right, frame.row(at))]);
-    let columns = || frame.x.major.iter().map(|tick| tick.at);
-    let rows = || frame.y.major.iter().map(|tick| tick.at);
-    let minor = frame.x.minor.iter().copied().fold(Path::default(), upright);
-    sheet.path("minor", &frame.y.minor.iter().copied().fold(minor, level));
-    sheet.path("major", &rows().fold(columns().fold(Path::default(), upright), level));
+    let Rect { left, bottom, .. } = frame.area;
+    let all = usize::MAX;
+    sheet.path("minor", |area| frame.inside(area).draw_mesh(|backend, line| line.draw(backend, &STYLE), all, all));
+    sheet.path("major", |area| {
+        let bold = || BoldPoints(all);
+        frame.inside(area).draw_mesh(|backend, line| line.draw(backend, &STYLE), bold(), bold())
+    });
     for tick in &frame.x.major {
         sheet.text("fi", &tick.label, (frame.column(tick.at), bottom + 15.0), TICK, Anchor::Middle);
     }
@@ -85,18 +86,16 @@ fn mesh(sheet: &mut Sheet, frame: &Frame) {
 /// The two axes with their ticks, drawn last, over the data that reach them.
 pub(super) fn axes(sheet: &mut Sheet, frame: &Frame) {
     let Rect { left, top, right, bottom } = frame.area;
-    let path = Path::default().line(&[(left, top), (left, bottom), (right, bottom)]);
-    let path = frame
-        .x
-        .major
-        .iter()
-        .map(|tick| frame.column(tick.at))
-        .fold(path, |path, x| path.line(&[(x, bottom), (x, bottom + MARK)]));
-    let path = frame
-        .y
-        .major
-        .iter()
-        .map(|tick| frame.row(tick.at))
-        .fold(path, |path, y| path.line(&[(left - MARK, y), (left, y)]));
-    sheet.path("axis", &path);
+    let columns = frame.x.major.iter().map(|tick| frame.column(tick.at));
+    let rows = frame.y.major.iter().map(|tick| frame.row(tick.at));
+    sheet.path("axis", |area| {
+        area.draw(&line(&[(left, top), (left, bottom), (right, bottom)]))?;
+        for x in columns {
+            area.draw(&line(&[(x, bottom), (x, bottom + MARK)]))?;
+        }
+        for y in rows {
+            area.draw(&line(&[(left - MARK, y), (left, y)]))?;
+        }
+        Ok(())
+    });
 }

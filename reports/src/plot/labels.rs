@@ -1,7 +1,7 @@
 //! Names of series and curves in the right margin: beside their right ends, or as a list where that cannot work.
 
 use super::frame::Frame;
-use super::sheet::{Anchor, Path, Pixel, Sheet};
+use super::sheet::{Anchor, Pixel, Sheet};
 use super::style::fill;
 use super::text::{text_width, wrap};
 use super::{cells, layers, markers};
@@ -116,7 +116,7 @@ fn sample(sheet: &mut Sheet, entry: &Entry<'_>, (x, y): Pixel) {
     }
     if let (Some(marker), Some(color)) = (entry.marker, entry.color) {
         let middle = (x + (SAMPLE - 6.0) / 2.0, y);
-        sheet.path(format_args!("mark {}", fill(color)), &markers::add(Path::default(), marker, middle, 1.0));
+        sheet.path(format_args!("mark {}", fill(color)), |area| markers::draw(area, marker, middle, 1.0));
     }
 }
 

@@ -1,13 +1,15 @@
 //! What lies inside the frame: bands, lines, points, failed runs.
 
-use super::clip::clip_segment;
+use super::backend::{Area, Drawn, STYLE, line};
+use super::clip::{Point, clip_segment};
 use super::frame::{Frame, along};
 use super::overlap::{self, Tracks};
-use super::sheet::{Anchor, Path, Pixel, Sheet};
+use super::sheet::{Anchor, Pixel, Sheet};
 use super::style::{COLORS, fill, stroke};
 use super::text::text_width;
 use super::{cells, markers};
 use crate::{Figure, Layer, Line, Marker, Series};
+use plotters::element::PathElement;
 
 /// Everything but the words, back to front.
 pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, figure: &Figure) {
@@ -39,7 +41,7 @@ pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, figure: &Figure) {
                     sheet.line("guide sg", &ends);
                 }
             }
-            Layer::Curve { points, .. } => sheet.path("halo", &path_of(&frame.visible(points))),
+            Layer::Curve { points, .. } => sheet.path("halo", |area| curve(area, frame, points)),
             _ => {}
         }
     }
@@ -48,7 +50,7 @@ pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, figure: &Figure) {
     for layer in &figure.layers {
         // Theory lies on the measured line, whose colour shows between its dashes.
         if let Layer::Curve { points, color, .. } = layer {
-            sheet.path(format_args!("curve {}", ink_or(*color)), &path_of(&frame.visible(points)));
+            sheet.path(format_args!("curve {}", ink_or(*color)), |area| curve(area, frame, points));
         }
     }
     points(sheet, frame, &series);
@@ -75,8 +77,11 @@ pub(super) fn look(color: usize, line: Line) -> String {
     format!("line {}{dashes}", stroke(color))
 }
 
-fn path_of(pieces: &[Vec<Pixel>]) -> Path {
-    pieces.iter().fold(Path::default(), |path, piece| path.line(piece))
+/// What is visible of a line through data points.
+fn curve(area: &Area<'_>, frame: &Frame, points: &[Point]) -> Drawn {
+    let inside = frame.inside(area);
+    let coordinates = |piece: &Vec<Point>| piece.iter().map(|&[x, y]| (x, y)).collect::<Vec<_>>();
+    frame.pieces(points).iter().try_for_each(|piece| inside.draw(&PathElement::new(coordinates(piece), STYLE)))
 }
 
 /// The lines of all series; where one lies on earlier ones it is drawn in dashes, and they show between.
@@ -87,43 +92,43 @@ fn lines(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
         tracks.add(i, pieces.iter().flat_map(|piece| along(piece, 1.0)));
     }
     for (i, (one, pieces)) in series.iter().zip(&visible).enumerate() {
-        let Some(line) = one.line else { continue };
-        let look = look(one.color, line);
+        let Some(kind) = one.line else { continue };
+        let look = look(one.color, kind);
         // A line with dashes of its own lets the lower ones show already.
         if look.contains(' ') && !look.ends_with(&stroke(one.color)) {
-            sheet.path(&look, &path_of(pieces));
+            sheet.path(&look, |area| curve(area, frame, &one.points));
             continue;
         }
-        let mut paths = [const { None }; 4];
+        let mut lines = [const { Vec::new() }; 4];
         for (under, part) in pieces.iter().flat_map(|piece| overlap::parts(&tracks, i, piece)) {
-            let path: &mut Option<Path> = &mut paths[under.min(3)];
-            *path = Some(path.take().unwrap_or_default().line(&part));
+            lines[under.min(3)].push(line(&part));
         }
-        for (under, path) in paths.into_iter().enumerate().filter_map(|(under, path)| Some((under, path?))) {
+        for (under, lines) in lines.iter().enumerate() {
             let over = if under == 0 { String::new() } else { format!(" over{under}") };
-            sheet.path(format_args!("{look}{over}"), &path);
+            sheet.path(format_args!("{look}{over}"), |area| lines.iter().try_for_each(|line| area.draw(line)));
         }
     }
     for one in series {
-        sheet.path(format_args!("whisker {}", stroke(one.color)), &whiskers(frame, one));
+        sheet.path(format_args!("whisker {}", stroke(one.color)), |area| whiskers(area, frame, one));
     }
 }
 
-fn whiskers(frame: &Frame, series: &Series) -> Path {
-    let mut path = Path::default();
+fn whiskers(area: &Area<'_>, frame: &Frame, series: &Series) -> Drawn {
     for ([x, _], [low, high]) in series.points.iter().zip(&series.whiskers) {
         // A whisker that reaches zero on a log axis reaches the edge of the frame.
         let bottom = frame.y.map_value(*low).or((*low <= 0.0 && high.is_finite()).then_some(frame.y.low));
         let ends = (frame.x.map_value(*x), bottom, frame.y.map_value(*high));
         let (Some(x), Some(low), Some(high)) = ends else { continue };
         let Some([a, b]) = clip_segment([x, low], [x, high], frame.window()) else { continue };
-        path = path.line(&[frame.pixel(a), frame.pixel(b)]);
+        area.draw(&line(&[frame.pixel(a), frame.pixel(b)]))?;
         for (end, cut) in [(a, a[1] != low), (b, b[1] != high)] {
             let (x, y) = frame.pixel(end);
-            path = if cut { path } else { path.line(&[(x - 3.0, y), (x + 3.0, y)]) };
+            if !cut {
+                area.draw(&line(&[(x - 3.0, y), (x + 3.0, y)]))?;
+            }
         }
     }
-    path
+    Ok(())
 }
 
 /// The marker a series shows its points with: one with neither marker nor line would show nothing.
@@ -141,8 +146,9 @@ fn points(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
     for (i, one) in shown.iter().enumerate() {
         let Some((marker, places)) = one else { continue };
         let scale = |at: Pixel| 1.0 + 0.45 * tracks.over(i, at).min(3) as f64;
-        let path = places.iter().fold(Path::default(), |path, &at| markers::add(path, *marker, at, scale(at)));
-        sheet.path(format_args!("mark {}", fill(series[i].color)), &path);
+        sheet.path(format_args!("mark {}", fill(series[i].color)), |area| {
+            places.iter().try_for_each(|&at| markers::draw(area, *marker, at, scale(at)))
+        });
     }
 }
 
@@ -169,12 +175,12 @@ pub(super) fn failed_places(frame: &Frame, series: &[&Series]) -> Vec<(Pixel, us
 fn failed(sheet: &mut Sheet, frame: &Frame, series: &[&Series]) {
     let places = failed_places(frame, series);
     for &(at, color) in &places {
-        sheet.path(format_args!("failed {}", stroke(color)), &markers::add_failed(Path::default(), at));
+        sheet.path(format_args!("failed {}", stroke(color)), |area| markers::draw_failed(area, at));
     }
     if !places.is_empty() {
         let (words, size, at) = ("run failed", 11.5, (frame.area.right, frame.area.top - 9.0));
         sheet.text("fg", words, at, size, Anchor::End);
         let mark = (at.0 - text_width(words, size) - 9.0, at.1);
-        sheet.path("failed sg", &markers::add_failed(Path::default(), mark));
+        sheet.path("failed sg", |area| markers::draw_failed(area, mark));
     }
 }

@@ -1,29 +1,31 @@
 //! The eight shapes of a point, all of them filled outlines, and the sign of a run that failed.
 
-use super::sheet::{Path, Pixel};
+use super::backend::{Area, Drawn, circle, line, polygon};
+use super::sheet::Pixel;
 use crate::Marker;
 use std::f64::consts::PI;
 
 /// Half the size of a marker in CSS pixels; the shapes are scaled to look equally heavy.
 const RADIUS: f64 = 3.6;
 
-/// The outline of a marker, `scale` times as large as usual, added to those before.
-pub(super) fn add(path: Path, marker: Marker, at: Pixel, scale: f64) -> Path {
+/// The outline of a marker, `scale` times as large as usual.
+pub(super) fn draw(sheet: &Area<'_>, marker: Marker, at: Pixel, scale: f64) -> Drawn {
     let radius = RADIUS * scale;
     match marker {
-        Marker::Circle => path.circle(at, radius),
+        Marker::Circle => sheet.draw(&circle(at, radius)),
         _ => {
             let corner = |[dx, dy]: [f64; 2]| (at.0 + radius * dx, at.1 + radius * dy);
-            path.polygon(&outline(marker).into_iter().map(corner).collect::<Vec<_>>())
+            sheet.draw(&polygon(&outline(marker).into_iter().map(corner).collect::<Vec<_>>()))
         }
     }
 }
 
 /// The cross in a ring that stands for a run that failed: no series has this shape.
-pub(super) fn add_failed(path: Path, (x, y): Pixel) -> Path {
+pub(super) fn draw_failed(sheet: &Area<'_>, (x, y): Pixel) -> Drawn {
     let arm = 3.4;
-    let path = path.circle((x, y), 4.8).line(&[(x - arm, y - arm), (x + arm, y + arm)]);
-    path.line(&[(x - arm, y + arm), (x + arm, y - arm)])
+    sheet.draw(&circle((x, y), 4.8))?;
+    sheet.draw(&line(&[(x - arm, y - arm), (x + arm, y + arm)]))?;
+    sheet.draw(&line(&[(x - arm, y + arm), (x + arm, y - arm)]))
 }
 
 /// Corners in units of the radius, y downwards.
@@ -60,11 +62,16 @@ fn polar(r: f64, angle: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sheet::Sheet;
     use super::*;
 
     #[test]
     fn no_two_shapes_are_the_same() {
-        let drawn = Marker::ALL.map(|marker| add(Path::default(), marker, (50.0, 50.0), 1.0));
+        let drawn = Marker::ALL.map(|marker| {
+            let mut sheet = Sheet::new((100, 100));
+            sheet.path("mark", |area| draw(area, marker, (50.0, 50.0), 1.0));
+            sheet.body
+        });
         assert!((0..8).all(|i| (0..i).all(|j| drawn[i] != drawn[j])));
     }
 }

@@ -1,15 +1,18 @@
 //! Figures to SVG.
 //!
-//! The SVG is written by this module itself: scales, ticks, clipping and the places of words are its own, and what a charting
-//! library would add is lines and letters, in whole pixels and without dashes or classes.
+//! plotters maps coordinates and draws elements, onto a backend of this module that writes them as SVG with classes. Scales,
+//! ticks and clipping are this module's own (plotters moves a point beyond the frame onto its edge, which bends the line), and
+//! so are words and their places.
 //!
 //! ```text
 //! axis, ticks   values to fractions of an axis        style    colours, dashes
-//! frame, clip   fractions to the sheet                sheet    paths and words as SVG
+//! frame, clip   fractions to the sheet                sheet    words as SVG
+//! backend       plotters' elements as SVG paths
 //! grid, layers, cells, labels, place, triangle        what is drawn, back to front
 //! ```
 
 mod axis;
+mod backend;
 mod cells;
 mod clip;
 mod frame;
@@ -51,7 +54,7 @@ pub fn svg(figure: &Figure) -> Result<String, Error> {
         text::FAMILY
     );
     let sheet = Rect { left: 0.0, top: 0.0, right: width.into(), bottom: height.into() };
-    let mut ground = Sheet::default();
+    let mut ground = Sheet::new((width, height));
     ground.rect("ground", sheet);
     let names = named(figure, &format!("{id}-title"), &format!("{id}-desc"));
     Ok(format!("{head}{names}<style>{style}</style>\n{}{}</svg>\n", ground.body, body(figure)?))
@@ -91,7 +94,7 @@ fn body(figure: &Figure) -> Result<String, Error> {
     let spread = extent(figure);
     let (x, any_x) = AxisMap::new(&figure.x, &spread.x, &spread.x_edges).map_err(|m| refuse("x axis", m))?;
     let (y, any_y) = AxisMap::new(&figure.y, &spread.y, &spread.y_edges).map_err(|m| refuse("y axis", m))?;
-    let mut sheet = Sheet::default();
+    let mut sheet = Sheet::new((figure.width, figure.height));
     let frame = grid::draw(&mut sheet, figure, [&x, &y]);
     layers::draw(&mut sheet, &frame, figure);
     let mut taken = taken::of(&frame, figure);

@@ -25,9 +25,8 @@ fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     (0..=count as i64).map(|i| first + i as f64).take(if count < 0.0 { 0 } else { 1001 }).collect()
 }
 
-/// 1, 2 or 5 times a power of ten, given as digit and exponent: the least for which no more than `most` ticks fit.
-fn nice_step(span: f64, most: usize) -> (f64, i32) {
-    let least = span / most.max(2) as f64;
+/// 1, 2 or 5 times a power of ten that is no less than `least`, given as digit and exponent.
+fn nice_step(least: f64) -> (f64, i32) {
     let exponent = least.log10().floor() as i32;
     let choices = [(1.0, exponent), (2.0, exponent), (5.0, exponent), (1.0, exponent + 1)];
     let fits = |&&(digit, e): &&(f64, i32)| digit * power_of_ten(e) >= least * (1.0 - 1e-9);
@@ -36,11 +35,12 @@ fn nice_step(span: f64, most: usize) -> (f64, i32) {
 
 /// Evenly spaced ticks from `low` to `high`; the labels name the values times 10^shift.
 fn linear(low: f64, high: f64, most: usize, shift: i32) -> Vec<Tick> {
-    // Between two numbers that differ by nothing, or by more than there is, no step is nice.
-    if !(high - low > 0.0 && (high - low).is_finite()) {
+    // Between two numbers that differ by too little to be divided, or by more than there is, no step is nice.
+    let least = (high - low) / most.max(2) as f64;
+    if !(least > 0.0 && least.is_finite()) {
         return Vec::new();
     }
-    let (digit, exponent) = nice_step(high - low, most);
+    let (digit, exponent) = nice_step(least);
     let step = digit * power_of_ten(exponent);
     let (unit, largest) = (exponent + shift, low.abs().max(high.abs()).log10().floor() as i32 + shift);
     let plain = (-4..=5).contains(&largest) && unit >= -5;

@@ -1,8 +1,9 @@
 //! Slope triangles: set beside the data of their slope, over nothing that is already there.
 
+use super::backend::polygon;
 use super::frame::Frame;
 use super::layers;
-use super::sheet::{Anchor, Path, Pixel, Rect, Sheet};
+use super::sheet::{Anchor, Pixel, Rect, Sheet};
 use super::taken::Taken;
 use crate::{Figure, Layer, Scale};
 
@@ -82,7 +83,7 @@ fn one(sheet: &mut Sheet, frame: &Frame, figure: &Figure, order: f64, taken: &mu
     let room = Rect { left: area.left + 2.0, top: area.top + 20.0, right: area.right - 2.0, bottom: area.bottom - 2.0 };
     let fits = candidates(frame, figure, order, size).into_iter().filter(|t| t.bounds().inside(&room));
     let Some(best) = fits.min_by_key(|t| taken.cost(&t.bounds(), |p| t.touches(p))) else { return };
-    sheet.path("axis", &Path::default().polygon(&best.corners()));
+    sheet.path("axis", |area| area.draw(&polygon(&best.corners())));
     let Rect { left, top, right, bottom } = best.bounds();
     taken.boxes.push(Rect { left: left - 2.0, right: right + 2.0, top: top - 6.0, bottom: bottom + 6.0 });
     sheet.text("fi", &number(order), best.number(), SIZE, Anchor::Middle);
