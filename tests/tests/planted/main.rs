@@ -208,9 +208,11 @@ impl Judge {
     fn seen_by(&mut self, fault: &Fault, scenes: &[&'static str]) -> [usize; 2] {
         let index = MethodId::ALL.iter().position(|m| *m == fault.method).expect("a method");
         let mut claims = 0;
+        let (_, steps) = METHODS[index];
         for &scene in scenes {
             let baseline = self.baselines.entry((index, scene)).or_insert_with(|| Baseline::of(scene, fault.method));
-            claims += baseline.broken(fault).len();
+            let anyway = baseline.broken(&right(fault.method, steps));
+            claims += baseline.broken(fault).into_iter().filter(|id| !anyway.contains(id)).count();
         }
         let name = fault.method.id();
         let name = if BODIES.contains(&scenes[0]) { format!("{name}/world-omega") } else { name.to_owned() };
@@ -240,6 +242,11 @@ fn without_a_fault_nothing_is_broken() {
     let mut judge = Judge::new();
     for (method, steps) in METHODS {
         assert_eq!(judge.seen_by(&right(method, steps), scenes_of(method)), [0, 0], "{}", method.id());
+        for &scene in scenes_of(method).iter().filter(|_| !method.is_implicit()) {
+            // Fixed-point iterations round in another way than Newton's.
+            let broken = Baseline::of(scene, method).broken(&right(method, steps));
+            assert!(broken.is_empty(), "{} on {scene}: {broken:?}", method.id());
+        }
         if method == MethodId::Rk4 {
             assert_eq!(judge.seen_by(&right(method, steps), &BODIES[..]), [0, 0], "{} on bodies", method.id());
         }
@@ -371,7 +378,8 @@ fn faults() -> Vec<(String, Fault, &'static [&'static str])> {
 }
 
 /// Faults that change no number: nothing could see them.
-const WITHOUT_EFFECT: [&str; 0] = [];
+// The forced oscillator is driven by a cosine, and no other scene of this test looks at the time.
+const WITHOUT_EFFECT: [&str; 1] = ["the force at the time -t"];
 
 // Fails if: a planted fault is seen by nobody.
 #[test]

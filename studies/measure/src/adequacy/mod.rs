@@ -10,7 +10,7 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::claim;
-use crate::claim::Evidence;
+use crate::claim::{Evidence, largest};
 use crate::error::Error;
 use crate::study::{Derived, Selection, Study, check_method, check_steps, distinct, short};
 use crate::sweep::in_parallel;
@@ -204,12 +204,14 @@ fn seen(sweep: &[&Row]) -> Seen {
         unit: first.unit.clone(),
         finest,
         full: None,
-        scale: sweep.iter().filter_map(|row| row.error).fold(0.0, f64::max),
+        scale: largest(sweep.iter().map(|row| row.error)).unwrap_or(f64::NAN),
         order,
         plateau_h_s: sweep.iter().rev().take_while(near).last().map(|row| row.h_s),
         operations_a_step: first.operations.checked_div(first.steps).unwrap_or(0),
         evaluations_a_step: first.evaluations as f64 / first.steps as f64,
-        finished: sweep.iter().all(|row| row.outcome == Outcome::Finished && row.error.is_some_and(f64::is_finite)),
+        // Two sweeps under one name have steps that go back.
+        finished: sweep.iter().all(|row| row.outcome == Outcome::Finished && row.error.is_some_and(f64::is_finite))
+            && sweep.windows(2).all(|pair| pair[0].steps < pair[1].steps),
     }
 }
 

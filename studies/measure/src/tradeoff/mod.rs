@@ -174,7 +174,7 @@ impl Row {
     /// The error of a run that counts: it finished, and its error is a number.
     pub fn scored(&self) -> Option<f64> {
         let scores = self.part == Part::Run && self.outcome == Outcome::Finished;
-        self.error.filter(|error| scores && error.is_finite())
+        self.error.filter(|error| scores && error.is_finite() && *error >= 0.0)
     }
 }
 
