@@ -39,7 +39,7 @@ impl Known {
     /// The scene of a row.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list.
+    /// An unknown name, with the list.
     pub fn scene(&self, row: &Row) -> Result<&dyn AnyScene, Error> {
         Ok(self.get(row)?.scene.as_ref())
     }
@@ -52,7 +52,7 @@ impl Known {
     /// The method of a row.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list of those that the scene can be stepped with.
+    /// An unknown name, with the list of those that the scene can be stepped with.
     pub fn method(&self, row: &Row) -> Result<Stepper, Error> {
         Stepper::from_id(&row.method, self.scene(row)?)
     }
@@ -60,7 +60,7 @@ impl Known {
     /// Whether some scene can be stepped with a method of this name.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list of all methods.
+    /// An unknown name, with the list of all methods.
     pub fn is_method(&self, id: &str) -> Result<(), Error> {
         let all = || self.scenes.values().flat_map(|scene| &scene.methods);
         if all().any(|method| method == id) {
@@ -123,7 +123,7 @@ impl Known {
     /// Whether the mutant of a row is one.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list.
+    /// An unknown name, with the list.
     pub fn mutant(&self, row: &Row) -> Result<Option<Mutant>, Error> {
         if row.mutant.is_empty() { Ok(None) } else { Mutant::from_id(&row.mutant).map(Some) }
     }

@@ -93,7 +93,7 @@ impl Bounds {
     /// Holds a candidate to the f64 rows of the method of that name.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] where no row is of that method.
+    /// An unknown name where no row is of that method.
     pub fn hold(&self, method: &str, candidate: &dyn Candidate) -> Result<Held, Error> {
         let rows: Vec<&Row> =
             self.rows.iter().filter(|row| row.method == method && row.precision == Precision::F64).collect();

@@ -59,7 +59,7 @@ impl Kind {
     /// The kind of that name.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list.
+    /// An unknown name, with the list.
     pub fn from_id(id: &str) -> Result<Self, Error> {
         let known = || Self::ALL.map(|kind| kind.id().to_owned());
         Self::ALL.into_iter().find(|kind| kind.id() == id).ok_or_else(|| Error::unknown("kind", id, known()))
@@ -114,7 +114,7 @@ impl Subject {
     /// The subject of that name.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list.
+    /// An unknown name, with the list.
     pub fn from_id(id: &str) -> Result<Self, Error> {
         let all = Self::all();
         let known = || all.iter().map(|subject| subject.id().to_owned());

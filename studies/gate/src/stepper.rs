@@ -45,7 +45,7 @@ impl Stepper {
     /// The stepper of that name for a scene.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list of those that the scene can be stepped with.
+    /// An unknown name, with the list of those that the scene can be stepped with.
     pub fn from_id(id: &str, scene: &dyn AnyScene) -> Result<Self, Error> {
         if !scene.is_rigid() {
             return Ok(Stepper::Flat(method_from_id(id)?));

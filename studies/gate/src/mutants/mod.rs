@@ -79,7 +79,7 @@ impl Mutant {
     /// The mutant of that name.
     ///
     /// # Errors
-    /// [`Error::UnknownName`] with the list.
+    /// An unknown name, with the list.
     pub fn from_id(id: &str) -> Result<Self, Error> {
         let known = || Self::ALL.iter().map(|mutant| mutant.id().to_owned());
         Self::ALL.iter().copied().find(|mutant| mutant.id() == id).ok_or_else(|| Error::unknown("mutant", id, known()))

@@ -2,7 +2,7 @@
 //!
 //! Each panel of time has the Chebyshev interpolant of degree 15 of every coordinate. Its error is f^(16)(s) T16(x) / (2^15 16!) in
 //! a panel of half-width 1, so that it is largest where |T16| = 1: at five of these points, the ends among them, it is measured
-//! against the exact motion. A panel is halved until [`SAFETY`] times the largest meets the target; what does not get there (a
+//! against the exact motion. A panel is halved until `SAFETY` times the largest meets the target; what does not get there (a
 //! bounce) has no polynomial, and the exact motion is evaluated at every step.
 //! Source: L. N. Trefethen, Approximation Theory and Approximation Practice (2013), chapters 2 to 4.
 

@@ -1,4 +1,4 @@
-//! The one list of scenes. A new scene is one file beside this one, and one line in [`catalogue`].
+//! The one list of scenes. A new scene is one file beside this one, and one line in `list!`.
 
 mod answerable;
 pub mod bouncing_ball;

@@ -23,7 +23,7 @@ use super::top_series::{Pull, Spherical, halves, turn, turned};
 /// way and an integral of the third kind. All in double-double, so that f64 results are the exact ones rounded.
 ///
 /// Where the axis passes the vertical, or within 1e-6 of it in 1 - |u|, the half-angles are singular: there the motion is
-/// summed by power series over one nutation, and the nutations before it turn p and d by as much each; see [`super::top_series`].
+/// summed by power series over one nutation, and the nutations before it turn p and d by as much each; see `top_series`.
 #[derive(Clone, Copy, Debug)]
 pub struct LagrangeTop {
     attitude0: Rotation<fx128>,

@@ -4,7 +4,7 @@
 //! directions that omega passes through do not commute. C. Zener, Non-adiabatic crossing of energy levels, Proc. R.
 //! Soc. A 137 (1932) 696-702, solves the same equation of a spin in a field that changes linearly. Its solution by Kummer's
 //! functions cancels like e^(pi p), p = I omega_perp^2 / (8 |tau|); here q' = (omega0 + alpha t) q / 2 is summed by
-//! its power series, one radian of q after the other, and where omega turns slowly by the series of [`super::adiabatic`].
+//! its power series, one radian of q after the other, and where omega turns slowly by the series of `adiabatic`.
 
 use faer::fx128;
 use integrator::real::{Real, Single};
