@@ -9,7 +9,7 @@ fn root() -> PathBuf {
 /// A file of a report, what one row of it is, and the type that is written.
 const FILES: [(&str, &str, &str, &str); 11] = [
     ("convergence.csv", "the errors of one quantity in one run", "studies/measure/src/convergence/mod.rs", "Row"),
-    ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/orders.rs", "OrderRow"),
+    ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/order_row.rs", "OrderRow"),
     ("drift.csv", "one invariant over a stretch of a long run", "studies/measure/src/drift/mod.rs", "Row"),
     ("growth-laws.csv", "the law by which one error grows", "studies/measure/src/drift/laws.rs", "LawRow"),
     ("rotation.csv", "one measured number of a scheme for rigid bodies", "studies/measure/src/rotation/row.rs", "Row"),

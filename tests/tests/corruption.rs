@@ -176,6 +176,12 @@ const EXCEPTIONS: &[Exception] = &[
     ("convergence", "unit", "", WORDS),
     ("convergence", "theory_constant", "empty", NO_THEORY),
     ("convergence", "theory_constant", "missing", NO_THEORY),
+    (
+        "convergence",
+        "time_scale_s",
+        "constant",
+        "it chooses the steps that count for the law of rounding, which holds over other steps too",
+    ),
     ("drift", "precision", "constant", "a selection without f64 has no laws to judge"),
     (
         "drift",

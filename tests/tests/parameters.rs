@@ -29,12 +29,13 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
     }
 }
 
-/// Every claim holds, and there are some.
+/// No claim is broken, and some hold.
 fn assert_holds(claims: &[Claim], what: &str) {
     assert!(!claims.is_empty(), "{what}: no claim");
     for claim in claims {
-        assert_eq!(claim.verdict, Verdict::Holds, "{what}: {}: {}", claim.id, claim.measured);
+        assert_ne!(claim.verdict, Verdict::Broken, "{what}: {}: {}", claim.id, claim.measured);
     }
+    assert!(claims.iter().any(|claim| claim.verdict == Verdict::Holds), "{what}: nothing holds");
 }
 
 fn converges(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Vec<OrderRow> {

@@ -130,11 +130,11 @@ fn every_chart_has_a_name_and_every_link_a_target() {
         let head = chart.split('>').next().unwrap_or_default();
         let ids = head.split("aria-labelledby=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default();
         let has = |id: &str, tag: &str| {
-            let text = chart.split(&format!("<{tag} id={id}>")).nth(1).and_then(|rest| rest.split('<').next());
-            text.is_some_and(|text| !text.trim().is_empty()) && page.matches(&format!("id={id}>")).count() == 1
+            let text = chart.split(&format!("<{tag} id=\"{id}\">")).nth(1).and_then(|rest| rest.split('<').next());
+            text.is_some_and(|text| !text.trim().is_empty()) && page.matches(&format!("id=\"{id}\"")).count() == 1
         };
         let pair: Vec<&str> = ids.split(' ').collect();
-        head.contains("role=img") && pair.len() == 2 && has(pair[0], "title") && has(pair[1], "desc")
+        head.contains("role=\"img\"") && pair.len() == 2 && has(pair[0], "title") && has(pair[1], "desc")
     };
     let charts: Vec<&str> = page.split("<svg ").skip(1).collect();
     let nameless = charts.iter().filter(|chart| !named(chart)).count();

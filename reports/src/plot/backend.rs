@@ -5,6 +5,7 @@
 //! holds while the path is drawn; colour and width of plotters' own styles are not used.
 
 use super::sheet::{Pixel, Rect, Sheet};
+use super::tenth::{Tenth, tenths};
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, PathElement, Polygon, Rectangle};
@@ -78,11 +79,6 @@ fn whole(points: &[Pixel]) -> Vec<BackendCoord> {
     points.iter().map(|&(x, y)| (tenths(x), tenths(y))).collect()
 }
 
-/// CSS pixels in whole tenths.
-pub(super) fn tenths(pixels: f64) -> i32 {
-    (10.0 * pixels).round() as i32
-}
-
 type Done = Result<(), DrawingErrorKind<Infallible>>;
 
 impl DrawingBackend for Backend<'_> {
@@ -140,27 +136,6 @@ impl DrawingBackend for Backend<'_> {
     fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, vert: I, _: &S) -> Done {
         self.outlines.polygon(vert);
         Ok(())
-    }
-}
-
-/// A length in whole tenths of a CSS pixel.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Tenth(i32);
-
-impl Tenth {
-    pub(super) fn of(pixels: f64) -> Self {
-        Self(tenths(pixels))
-    }
-}
-
-impl Display for Tenth {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (sign, size) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
-        match (size / 10, size % 10) {
-            (whole, 0) => write!(f, "{sign}{whole}"),
-            (0, part) => write!(f, "{sign}.{part}"),
-            (whole, part) => write!(f, "{sign}{whole}.{part}"),
-        }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Where the axes lie on the sheet, and what of the data lies between them.
 
 use super::axis::AxisMap;
-use super::backend::{Area, Backend, tenths};
+use super::backend::{Area, Backend};
 use super::clip::{Point, Window, clip_line};
 use super::sheet::{Pixel, Rect};
+use super::tenth::tenths;
 use crate::AxisName;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::drawing::DrawingArea;

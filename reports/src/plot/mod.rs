@@ -25,6 +25,7 @@ mod place;
 mod sheet;
 mod style;
 mod taken;
+mod tenth;
 mod text;
 mod ticks;
 mod triangle;

@@ -1,6 +1,6 @@
 //! The sheet: its SVG, and the words on it; outlines come from `backend`. Lengths are CSS pixels, written to a tenth.
 
-use super::backend::{Tenth, tenths};
+use super::tenth::{Tenth, tenths};
 use super::text::wrap;
 use std::fmt::Write as _;
 

@@ -82,7 +82,7 @@ pub struct Ensemble;
 impl Study for Ensemble {
     type Row = Row;
     const ID: &'static str = "ensemble";
-    const HEEDS: &'static [&'static str] = &["precision", "steps", "members", "seed"];
+    const HEEDS: &'static [&'static str] = &["precision", "steps", "for", "members", "seed"];
     const ABOUT: &'static str =
         "Starts each scene from many states drawn by its rule, and ranks the errors: median, 95 %, worst";
     const EXAMPLES: &'static str = "ensemble --scene kepler --members 1000
@@ -144,6 +144,8 @@ pub fn check(selection: &Selection, count: usize, seed: u64) -> Result<(), Error
 struct Drawing<'a> {
     scene: &'a dyn AnyScene,
     members: Box<dyn Members>,
+    /// End of a run, s.
+    end_s: f64,
     exact: Vec<Observation>,
 }
 
@@ -164,10 +166,11 @@ pub fn measure(selection: &Selection, count: usize, seed: u64) -> Vec<Row> {
         .iter()
         .filter_map(|scene| {
             let members = draw(scene.as_ref(), count, seed).ok()?;
-            let end = fx128::lit(scene.scene().info().horizon_s);
+            let end_s = selection.end_s(scene.as_ref());
+            let end = fx128::lit(end_s);
             let all: Vec<usize> = (0..count).collect();
             let exact = in_parallel(&all, |_| 1, &crate::sweep::Progress::silent(), |&i| members.alone(i).exact(end));
-            Some(Drawing { scene: scene.as_ref(), members, exact })
+            Some(Drawing { scene: scene.as_ref(), members, end_s, exact })
         })
         .collect();
     let mut sweeps = Vec::new();
@@ -201,10 +204,9 @@ fn steps(selection: &Selection, scene: &dyn AnyScene) -> Vec<u64> {
 
 impl Job<'_> {
     fn errors(&self) -> Vec<Errors> {
-        let Drawing { scene, members, exact } = self.drawing;
-        let end_s = scene.scene().info().horizon_s;
+        let Drawing { members, exact, end_s, .. } = self.drawing;
         let packs = self.members.clone().step_by(lanes::WIDTH).map(|i| i..self.members.end.min(i + lanes::WIDTH));
-        let ends = packs.flat_map(|pack| members.ends(pack, self.method, end_s, self.steps).unwrap_or_default());
+        let ends = packs.flat_map(|pack| members.ends(pack, self.method, *end_s, self.steps).unwrap_or_default());
         let error = |(end, exact): (Option<Observation>, &Observation)| {
             Some(end?.distances(exact)).filter(|errors| errors.iter().all(|(_, error)| error.is_finite()))
         };
@@ -218,7 +220,7 @@ fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: 
     let row = |quantity| {
         let of = |errors: &Errors| Some(errors.as_ref()?.iter().find(|(q, _)| *q == quantity)?.1);
         let ranked = Ranked::new(errors.iter().map(of));
-        let ExpectedOrder::Of(order) = scene.expected_error(method, quantity, scene.info().horizon_s).order else {
+        let ExpectedOrder::Of(order) = scene.expected_error(method, quantity, drawing.end_s).order else {
             return (quantity, ranked, None);
         };
         (quantity, ranked, Some(order))
@@ -232,7 +234,7 @@ fn rows(drawing: &Drawing<'_>, method: MethodId, steps: u64, seed: u64, errors: 
             method: method.id().to_owned(),
             precision: Precision::F64,
             steps,
-            h_s: scene.info().horizon_s / steps as f64,
+            h_s: drawing.end_s / steps as f64,
             quantity,
             unit: quantity.unit().to_owned(),
             members: errors.len(),
