@@ -91,7 +91,12 @@ fn leaves(tree: &str) -> Vec<String> {
 fn imports(own: &Module, text: &str, known: &BTreeMap<Module, String>) -> BTreeSet<Module> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let mut found = BTreeSet::new();
-    for statement in code.split("use ").skip(1).filter_map(|rest| rest.split_once(';')).map(|(tree, _)| tree) {
+    let statement = |(at, _): (usize, &str)| {
+        let before = code[..at].rsplit('\n').next().unwrap_or_default().trim();
+        let is_use = before.is_empty() || before.starts_with("pub");
+        code[at + 4..].split_once(';').map(|(tree, _)| tree).filter(|_| is_use)
+    };
+    for statement in code.match_indices("use ").filter_map(statement) {
         for leaf in leaves(statement) {
             let mut parts: Vec<String> = leaf.split("::").map(|part| part.trim().to_owned()).collect();
             let mut base = match parts.first().map(String::as_str) {
