@@ -42,7 +42,7 @@ fn a_killed_run_leaves_the_old_report_or_the_new_one() {
     let plan = ["--quick", "--scene", "constant-force", "--method", "rk4"];
     let (fresh, out) = (tempfile::tempdir().expect("temporary"), tempfile::tempdir().expect("temporary"));
     run("report", &plan, fresh.path());
-    run("report", &[&plan[..], &["--set", "mass=1.25"]].concat(), out.path());
+    run("report", &[&plan[..], &["--set", "mass=1.75"]].concat(), out.path());
     let (new, old) = (untimed(files(fresh.path())), untimed(files(out.path())));
     assert!(new.keys().eq(old.keys()) && new["convergence.csv"] != old["convergence.csv"]);
     for milliseconds in (0..12).map(|i| 5 << i) {
