@@ -22,7 +22,7 @@ pub trait Lanes: Real {
 }
 
 /// Numbers that are filled from plain ones, and read, lane by lane.
-pub trait Laned: Real {
+pub trait FromLanes: Real {
     /// How many plain numbers there are.
     const LANES: usize;
     /// The numbers f(0), f(1), ...
@@ -260,7 +260,7 @@ impl<T: Real, const N: usize> Real for Pack<T, N> {
     }
 }
 
-impl Laned for f64 {
+impl FromLanes for f64 {
     const LANES: usize = 1;
     fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
         f(0)
@@ -270,7 +270,7 @@ impl Laned for f64 {
     }
 }
 
-impl Laned for f64x4 {
+impl FromLanes for f64x4 {
     const LANES: usize = 4;
     fn from_lanes(f: impl FnMut(usize) -> f64) -> Self {
         f64x4::from(std::array::from_fn::<f64, 4, _>(f))
@@ -280,7 +280,7 @@ impl Laned for f64x4 {
     }
 }
 
-impl<T: Laned + Lanes> Laned for Fused<T> {
+impl<T: FromLanes + Lanes> FromLanes for Fused<T> {
     const LANES: usize = T::LANES;
     fn from_lanes(f: impl FnMut(usize) -> f64) -> Self {
         Fused(T::from_lanes(f))
@@ -290,7 +290,7 @@ impl<T: Laned + Lanes> Laned for Fused<T> {
     }
 }
 
-impl<T: Laned, const N: usize> Laned for Pack<T, N> {
+impl<T: FromLanes, const N: usize> FromLanes for Pack<T, N> {
     const LANES: usize = N * T::LANES;
     fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
         Pack(std::array::from_fn(|vector| T::from_lanes(|i| f(vector * T::LANES + i))))

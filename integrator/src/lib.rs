@@ -98,7 +98,7 @@
 //! # Lanes
 //!
 //! ```
-//! use integrator::lanes::{Laned, Pack};
+//! use integrator::lanes::{FromLanes, Pack};
 //! use integrator::{Model, Real, State, drive, methods::VelocityVerlet};
 //! use nalgebra::Vector1;
 //!

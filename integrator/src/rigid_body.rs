@@ -108,7 +108,7 @@ constructor!(WorldOmega, BodyOmega, WorldMomentum, WithoutGyroscopicTerm);
 
 /// Which angular quantity a model of a rigid body stores.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Storage {
+pub enum Formulation {
     /// [`WorldOmega`].
     #[default]
     WorldOmega,
@@ -120,18 +120,22 @@ pub enum Storage {
     WithoutGyroscopicTerm,
 }
 
-impl Storage {
+impl Formulation {
     /// Every one.
-    pub const ALL: [Storage; 4] =
-        [Storage::WorldOmega, Storage::BodyOmega, Storage::WorldMomentum, Storage::WithoutGyroscopicTerm];
+    pub const ALL: [Formulation; 4] = [
+        Formulation::WorldOmega,
+        Formulation::BodyOmega,
+        Formulation::WorldMomentum,
+        Formulation::WithoutGyroscopicTerm,
+    ];
 
     /// The name on the command line and in tables.
     pub fn id(self) -> &'static str {
         match self {
-            Storage::WorldOmega => "world-omega",
-            Storage::BodyOmega => "body-omega",
-            Storage::WorldMomentum => "world-momentum",
-            Storage::WithoutGyroscopicTerm => "without-gyroscopic-term",
+            Formulation::WorldOmega => "world-omega",
+            Formulation::BodyOmega => "body-omega",
+            Formulation::WorldMomentum => "world-momentum",
+            Formulation::WithoutGyroscopicTerm => "without-gyroscopic-term",
         }
     }
 }

@@ -10,40 +10,41 @@ use integrator::{Real, Single, State, Vector};
 use nalgebra::{SVector, Vector3};
 use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion, FlatScene};
-use scenes::invariants::{Balance, Entry};
+use scenes::invariants::{Entry, Invariant};
 use scenes::observation::{Observation, Quantity, Value};
 
 /// Every law that an account breaks, in words.
-pub fn violations(scene: &dyn AnyScene, account: &dyn Fn(fx128, &Observation) -> Vec<Entry>) -> Vec<String> {
-    let mut all = kinetic(scene, account);
-    for (i, entry) in account(fx128::ZERO, &scene.exact(fx128::ZERO)).iter().enumerate() {
-        let what = format!("{} {}", scene.id(), entry.balance.id());
-        let found = if entry.conserved { constant(scene, account, i) } else { rate(scene, account, i, entry.balance) };
+pub fn violations(scene: &dyn AnyScene, invariants: &dyn Fn(fx128, &Observation) -> Vec<Entry>) -> Vec<String> {
+    let mut all = kinetic(scene, invariants);
+    for (i, entry) in invariants(fx128::ZERO, &scene.exact(fx128::ZERO)).iter().enumerate() {
+        let what = format!("{} {}", scene.id(), entry.invariant.id());
+        let found =
+            if entry.conserved { constant(scene, invariants, i) } else { rate(scene, invariants, i, entry.invariant) };
         all.extend(found.map(|found| format!("{what}: {found}")));
     }
     all
 }
 
-type Account<'a> = &'a dyn Fn(fx128, &Observation) -> Vec<Entry>;
+type Invariants<'a> = &'a dyn Fn(fx128, &Observation) -> Vec<Entry>;
 
 /// Times at which an account is looked at.
 const LOOKS: u32 = 16;
 /// The exact motion is good to this part, relative; measured 1e-28 and better, by the tests of the exact motions.
 const EXACT: f64 = 1e-26;
 
-fn components(account: Account<'_>, scene: &dyn AnyScene, t: fx128, entry: usize) -> Vec<fx128> {
-    account(t, &scene.exact(t))[entry].value.clone()
+fn components(invariants: Invariants<'_>, scene: &dyn AnyScene, t: fx128, entry: usize) -> Vec<fx128> {
+    invariants(t, &scene.exact(t))[entry].value.clone()
 }
 
 /// The largest change of a conserved part, where it is more than rounding.
-fn constant(scene: &dyn AnyScene, account: Account<'_>, entry: usize) -> Option<String> {
-    let start = components(account, scene, fx128::ZERO, entry);
+fn constant(scene: &dyn AnyScene, invariants: Invariants<'_>, entry: usize) -> Option<String> {
+    let start = components(invariants, scene, fx128::ZERO, entry);
     // Kinetic and potential parts may cancel: the size of either is that of the account without its potential.
     let size = kinetic_size(scene) + start.iter().map(|x| x.to_f64().abs()).sum::<f64>();
     let end = scene.scene().info().horizon_s;
     (1..=LOOKS).find_map(|k| {
         let t = fx128::lit(end) * fx128::lit(f64::from(k)) / fx128::lit(f64::from(LOOKS));
-        let now = components(account, scene, t, entry);
+        let now = components(invariants, scene, t, entry);
         let off = now.iter().zip(&start).map(|(a, b)| (*a - *b).to_f64().abs()).sum::<f64>();
         (!(off <= EXACT * size)).then(|| format!("changes by {off:.3e} of {size:.3e} up to {} s", t.to_f64()))
     })
@@ -105,7 +106,7 @@ fn kinetic_size(scene: &dyn AnyScene) -> f64 {
 }
 
 /// The energy without what does not move, against the kinetic energy.
-fn kinetic(scene: &dyn AnyScene, account: Account<'_>) -> Vec<String> {
+fn kinetic(scene: &dyn AnyScene, invariants: Invariants<'_>) -> Vec<String> {
     let t = fx128::lit(0.375 * scene.scene().info().horizon_s);
     let seen = scene.exact(t);
     let mut at_rest = seen.clone();
@@ -114,7 +115,7 @@ fn kinetic(scene: &dyn AnyScene, account: Account<'_>) -> Vec<String> {
             v.fill(fx128::ZERO);
         }
     }
-    let energy = |seen: &Observation| account(t, seen).into_iter().find(|e| e.balance == Balance::Energy);
+    let energy = |seen: &Observation| invariants(t, seen).into_iter().find(|e| e.invariant == Invariant::Energy);
     let (Some(moving), Some(resting)) = (energy(&seen), energy(&at_rest)) else { return Vec::new() };
     let (part, kinetic) = (moving.value[0] - resting.value[0], kinetic_energy(scene, &seen));
     let size = kinetic.to_f64() + moving.value[0].to_f64().abs();
@@ -142,9 +143,9 @@ const INTEGRAL: f64 = 1e-12;
 
 /// How far a part that is not conserved is from the integral of its rate, where it is more than the integral's own error: between
 /// the times at which the motion is not smooth.
-fn rate(scene: &dyn AnyScene, account: Account<'_>, entry: usize, balance: Balance) -> Option<String> {
+fn rate(scene: &dyn AnyScene, invariants: Invariants<'_>, entry: usize, invariant: Invariant) -> Option<String> {
     let end = scene.scene().info().horizon_s;
-    let times: Vec<f64> = std::iter::once(0.0).chain(scene.scene().breaks_s(end)).chain([end]).collect();
+    let times: Vec<f64> = std::iter::once(0.0).chain(scene.scene().nonsmooth_times_s(end)).chain([end]).collect();
     times.windows(2).find_map(|w| {
         // A bounce is at its time to rounding: the pieces end beside it.
         let margin = 1e-9 * end;
@@ -154,12 +155,12 @@ fn rate(scene: &dyn AnyScene, account: Account<'_>, entry: usize, balance: Balan
         for panel in 0..PANELS {
             for (x, weight) in GAUSS {
                 let t = from + width * (f64::from(panel) + 0.5 * (x + 1.0));
-                let rates = rates(scene, balance, t);
+                let rates = rates(scene, invariant, t);
                 rates.iter().zip(&mut sum).for_each(|(r, sum)| *sum += r * weight * 0.5 * width);
                 size += rates.iter().map(|r| r.abs()).sum::<f64>() * weight * 0.5 * width;
             }
         }
-        let [a, b] = [from, to].map(|t| components(account, scene, fx128::lit(t), entry));
+        let [a, b] = [from, to].map(|t| components(invariants, scene, fx128::lit(t), entry));
         let gained = b.iter().zip(&a).map(|(b, a)| (*b - *a).to_f64());
         let off = gained.zip(&sum).map(|(gained, sum)| (gained - sum).abs()).fold(0.0, scenes::observation::worse);
         let size = size + kinetic_size(scene);
@@ -168,21 +169,27 @@ fn rate(scene: &dyn AnyScene, account: Account<'_>, entry: usize, balance: Balan
 }
 
 /// The rate of a part that is not conserved: power in W, force in N, torque in N m.
-fn rates(scene: &dyn AnyScene, balance: Balance, t: f64) -> Vec<f64> {
+fn rates(scene: &dyn AnyScene, invariant: Invariant, t: f64) -> Vec<f64> {
     let m = mass(scene);
     match scene.any_motion() {
-        AnyMotion::Few(erased) => flat(scene, balance, &erased, t, m),
-        AnyMotion::Many(erased) => flat(scene, balance, &erased, t, m),
+        AnyMotion::Few(erased) => flat(scene, invariant, &erased, t, m),
+        AnyMotion::Many(erased) => flat(scene, invariant, &erased, t, m),
         AnyMotion::Pivoted(_) => vec![f64::NAN],
-        AnyMotion::Flying(motion) => flying(balance, motion, t, m),
+        AnyMotion::Flying(motion) => flying(invariant, motion, t, m),
     }
 }
 
-fn flat<const M: usize>(scene: &dyn AnyScene, balance: Balance, erased: &FlatScene<'_, M>, t: f64, m: f64) -> Vec<f64> {
+fn flat<const M: usize>(
+    scene: &dyn AnyScene,
+    invariant: Invariant,
+    erased: &FlatScene<'_, M>,
+    t: f64,
+    m: f64,
+) -> Vec<f64> {
     let motion = erased.motion();
     let s: State<SVector<f64, M>> = motion.exact(t);
     let force: Vec<f64> = motion.rate(t, &s).iter().take(erased.dimension).map(|a| a * m).collect();
-    if balance != Balance::Energy {
+    if invariant != Invariant::Energy {
         // The sixteen masses have one momentum.
         return if erased.dimension == 16 { vec![force.iter().sum()] } else { force };
     }
@@ -201,7 +208,7 @@ fn flat<const M: usize>(scene: &dyn AnyScene, balance: Balance, erased: &FlatSce
     }]
 }
 
-fn flying(balance: Balance, motion: BodyMotion<'_, Vector3<f64>>, t: f64, m: f64) -> Vec<f64> {
+fn flying(invariant: Invariant, motion: BodyMotion<'_, Vector3<f64>>, t: f64, m: f64) -> Vec<f64> {
     let at = motion.exact(t);
     let force = motion.acceleration(t, &at) * m;
     let torque = match motion.torque(t, &at) {
@@ -209,9 +216,9 @@ fn flying(balance: Balance, motion: BodyMotion<'_, Vector3<f64>>, t: f64, m: f64
         Torque::Body(torque) => at.attitude.rotate(torque),
         Torque::None => Vector3::zero(),
     };
-    match balance {
-        Balance::Energy => vec![force.dot(&at.velocity) + torque.dot(&at.attitude.rotate(at.omega_body))],
-        Balance::Momentum => force.iter().copied().collect(),
-        Balance::AngularMomentum => torque.iter().copied().collect(),
+    match invariant {
+        Invariant::Energy => vec![force.dot(&at.velocity) + torque.dot(&at.attitude.rotate(at.omega_body))],
+        Invariant::Momentum => force.iter().copied().collect(),
+        Invariant::AngularMomentum => torque.iter().copied().collect(),
     }
 }

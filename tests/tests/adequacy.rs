@@ -1,4 +1,4 @@
-//! The adequacy study: its ladders, its recommendations, and that an inconsistent model is told from a consistent one.
+//! The adequacy study: its hierarchies, its recommendations, and that an inconsistent model is told from a consistent one.
 
 use std::sync::OnceLock;
 

@@ -7,9 +7,9 @@ use measure::study::Selection;
 use measure::sweep::Progress;
 use measure::tradeoff::advice::{Advice, Question, advise};
 use measure::tradeoff::candidate::candidates;
+use measure::tradeoff::exact::ExactSamples;
 use measure::tradeoff::quantity::Of;
 use measure::tradeoff::search::{Need, Search, attempt, finer, search};
-use measure::tradeoff::truth::Truth;
 use verification::programs::program;
 
 fn selection(id: &str) -> Selection {
@@ -31,7 +31,7 @@ fn an_advised_step_keeps_the_error_and_twice_the_step_does_not() {
     for (id, end_s) in [("pendulum", 2.75), ("kepler", 2.25), ("oscillator", 11.0), ("heavy-top", 1.75)] {
         let scene = scenes::by_id(id).expect("a scene");
         for error in [1e-2, 1e-4] {
-            let truth = Truth::new(scene.as_ref(), end_s, 64).at_every_step(Of::default(), error);
+            let truth = ExactSamples::new(scene.as_ref(), end_s, 64).at_every_step(Of::default(), error);
             let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: 2 };
             let mut found = 0;
             for candidate in
@@ -56,7 +56,7 @@ fn an_advised_step_keeps_the_error_and_twice_the_step_does_not() {
 #[test]
 fn rounding_and_too_many_steps_are_told_apart() {
     let scene = scenes::by_id("oscillator").expect("a scene");
-    let truth = Truth::new(scene.as_ref(), 2.75, 64).at_every_step(Of::default(), 1e-9);
+    let truth = ExactSamples::new(scene.as_ref(), 2.75, 64).at_every_step(Of::default(), 1e-9);
     let need = |error| Need { scene: scene.as_ref(), truth: &truth, error, end_s: 2.75, unit: 2 };
     let ask = |error, method, precision| {
         let candidate = candidates(scene.as_ref(), &[method])[0];

@@ -54,7 +54,7 @@ fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
             Subject::Evaluations => assert!(has(Kind::EvaluationsPerStep), "{scene} {method}"),
             // A limit of which no formula is known is not bounded; the audit lists it.
             Subject::Step => assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}"),
-            Subject::Balance(_) => {}
+            Subject::Invariant(_) => {}
         }
     }
 }
@@ -516,7 +516,7 @@ fn any_row() -> impl Strategy<Value = Row> {
     let subjects = prop::sample::select(vec![
         (Subject::Error(Quantity::Position), Kind::ErrorAtStep, "m"),
         (Subject::Error(Quantity::Velocity), Kind::Order, "1"),
-        (Subject::Balance(Drift::Energy), Kind::GrowthRate, "1/s"),
+        (Subject::Invariant(Drift::Energy), Kind::GrowthRate, "1/s"),
         (Subject::Evaluations, Kind::EvaluationsPerStep, "1"),
     ]);
     let number = prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO;

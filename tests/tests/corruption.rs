@@ -82,7 +82,7 @@ enum Outcome {
     /// They are refused.
     Refused,
     /// A claim is broken or not tested.
-    Seen,
+    ObservedOrder,
     /// No claim has changed its evidence.
     Same,
     /// Claims are gone, and none of the rest has changed.
@@ -105,7 +105,7 @@ fn judged<S: Study>(good: &[Claim], text: &str) -> (Outcome, String) {
         Ok(found) => found,
     };
     if let Some(claim) = found.iter().find(|claim| claim.verdict != Verdict::Holds) {
-        return (Outcome::Seen, claim.id.clone());
+        return (Outcome::ObservedOrder, claim.id.clone());
     }
     let by_id: BTreeMap<&str, &Claim> = found.iter().map(|claim| (claim.id.as_str(), claim)).collect();
     let other = |claim: &&Claim| {

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
-use integrator::lanes::{Fused, Laned, Pack};
+use integrator::lanes::{FromLanes, Fused, Pack};
 use integrator::methods::MethodId;
 use integrator::pose::Fixed;
 use integrator::rigid_body::{BodyOmega, Kinematics, RigidModel, WorldOmega};
@@ -69,7 +69,7 @@ fn a_lane_has_the_bits_of_its_member_alone_in_every_scene_and_method() {
 }
 
 /// Every number of every end, or nothing for a member that failed.
-fn packs<L: Laned, M: Model<L>, Q: Coordinates<Scalar = f64>>(
+fn packs<L: FromLanes, M: Model<L>, Q: Coordinates<Scalar = f64>>(
     model: &M,
     starts: &[State<Q>],
     method: MethodId,

@@ -6,7 +6,7 @@ use faer::fx128;
 use integrator::Real;
 use integrator::methods::MethodId;
 use scenes::any::AnyScene;
-use scenes::invariants::Balance;
+use scenes::invariants::Invariant;
 use scenes::observation::{Observation, Quantity};
 use scenes::run::{Outcome, Precision, Run, Shown};
 
@@ -14,9 +14,9 @@ use measure::study::Selection;
 use measure::sweep::Progress;
 use measure::tradeoff::advice::{Question, advise};
 use measure::tradeoff::candidate::{Candidate, candidates};
+use measure::tradeoff::exact::ExactSamples;
 use measure::tradeoff::quantity::Of;
 use measure::tradeoff::search::{Need, Search, search, watched};
-use measure::tradeoff::truth::Truth;
 
 fn scene(id: &str, set: &[(&str, &str)]) -> Box<dyn AnyScene> {
     let mut scene = scenes::by_id(id).expect("a scene of the catalogue");
@@ -106,7 +106,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
             let end_s = scene.scene().info().time_scale_s * random.log(2.0, 200.0);
             let candidate = candidates(scene, &methods)[i % methods.len()];
             let precision = if random.uniform() < 0.25 { Precision::F32 } else { Precision::F64 };
-            let sampled = Truth::new(scene, end_s, 64);
+            let sampled = ExactSamples::new(scene, end_s, 64);
             let order = f64::from(candidate.scheme.order());
             let error = sampled.scale() * random.log(10.0_f64.powf(-1.0 - order), 0.3);
             let truth = sampled.at_every_step(Of::Configuration, error);
@@ -197,7 +197,7 @@ fn the_error_at_a_pericentre_counts() {
     let end_s = 2.0 * std::f64::consts::TAU;
     let candidate = candidates(orbit.as_ref(), &[MethodId::Rk4])[0];
     for error in [1e-3, 1e-6] {
-        let truth = Truth::new(orbit.as_ref(), end_s, 64).at_every_step(Of::Configuration, error);
+        let truth = ExactSamples::new(orbit.as_ref(), end_s, 64).at_every_step(Of::Configuration, error);
         let need = Need { scene: orbit.as_ref(), truth: &truth, error, end_s, unit: 2 };
         let Search::Found(tried) = search(&need, candidate, Precision::F64) else { panic!("RK4 reaches {error}") };
         let all = brute(orbit.as_ref(), candidate, Precision::F64, end_s, tried.steps);
@@ -213,8 +213,8 @@ fn the_error_at_a_pericentre_counts() {
 fn a_lucky_coarse_run_is_no_rounding_floor() {
     let top = scene("heavy-top", &[]);
     let end_s = top.scene().info().horizon_s;
-    let of = Of::Balance(Balance::Energy);
-    let truth = Truth::new(top.as_ref(), end_s, 64).at_every_step(of, 0.05);
+    let of = Of::Invariant(Invariant::Energy);
+    let truth = ExactSamples::new(top.as_ref(), end_s, 64).at_every_step(of, 0.05);
     let need = Need { scene: top.as_ref(), truth: &truth, error: 0.05, end_s, unit: 2 };
     for candidate in candidates(top.as_ref(), &[MethodId::ImplicitEuler]) {
         let found = search(&need, candidate, Precision::F64);
@@ -247,7 +247,7 @@ fn what_has_no_error_is_refused() {
     let second = Question { duration_s: Some(1.0), ..question };
     let driven = ask(scene("forced-oscillator", &[("drive", "1e200")]), second);
     assert!(!matches!(&driven, Ok(text) if text.contains("met")), "{driven:?}");
-    let refused = ask(scene("pendulum", &[]), Question { of: Of::Balance(Balance::Momentum), ..question });
+    let refused = ask(scene("pendulum", &[]), Question { of: Of::Invariant(Invariant::Momentum), ..question });
     let message = refused.expect_err("a pendulum has no momentum that is accounted for").to_string();
     assert!(message.contains("--of: pendulum has no momentum"), "{message}");
 }
@@ -259,8 +259,8 @@ fn an_error_of_another_quantity_is_that_of_the_quantity() {
     let (end_s, steps) = (11.0, 2000);
     let candidate = candidates(spring.as_ref(), &[MethodId::ExplicitEuler])[0];
     let energy = |seen: &Observation| {
-        let entries = spring.scene().account(fx128::ZERO, seen);
-        entries.iter().find(|entry| entry.balance == Balance::Energy).expect("kept").value[0]
+        let entries = spring.scene().invariants(fx128::ZERO, seen);
+        entries.iter().find(|entry| entry.invariant == Invariant::Energy).expect("kept").value[0]
     };
     let largest = Cell::new([0.0_f64; 2]);
     let see = |i: u64, seen: Observation| {
@@ -271,9 +271,9 @@ fn an_error_of_another_quantity_is_that_of_the_quantity() {
     };
     let run = Run::new(candidate.scheme, Precision::F64, end_s, steps);
     spring.show(&run, Shown::To(&see)).expect("a step");
-    let of = [Of::Quantity(Quantity::Velocity), Of::Balance(Balance::Energy)];
+    let of = [Of::Quantity(Quantity::Velocity), Of::Invariant(Invariant::Energy)];
     for (of, expected) in of.into_iter().zip(largest.get()) {
-        let truth = Truth::new(spring.as_ref(), end_s, 64).at_every_step(of, expected);
+        let truth = ExactSamples::new(spring.as_ref(), end_s, 64).at_every_step(of, expected);
         let need = Need { scene: spring.as_ref(), truth: &truth, error: expected, end_s, unit: 2 };
         let found = watched(&need, candidate, Precision::F64, steps).error.expect("finished");
         assert!((found / expected - 1.0).abs() < 1e-12, "{of:?}: {found} {expected}");

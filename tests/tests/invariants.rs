@@ -3,7 +3,7 @@
 use faer::fx128;
 use integrator::Real;
 use scenes::any::AnyScene;
-use scenes::invariants::{Balance, Entry};
+use scenes::invariants::{Entry, Invariant};
 use scenes::observation::{Observation, Quantity};
 use verification::invariants::{parameter, violations};
 
@@ -12,7 +12,7 @@ use verification::invariants::{parameter, violations};
 fn what_a_scene_calls_conserved_is_constant_and_the_rest_follows_its_rate() {
     let all: Vec<String> = scenes::all()
         .iter()
-        .flat_map(|scene| violations(scene.as_ref(), &|t, seen| scene.scene().account(t, seen)))
+        .flat_map(|scene| violations(scene.as_ref(), &|t, seen| scene.scene().invariants(t, seen)))
         .collect();
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
@@ -28,12 +28,12 @@ fn field_energy(scene: &dyn AnyScene, seen: &Observation) -> fx128 {
 
 const FAULTS: [(&str, &str, Fault); 6] = [
     ("charged-particle", "the potential has the wrong sign", |scene, seen, e| {
-        if e.balance == Balance::Energy {
+        if e.invariant == Invariant::Energy {
             e.value[0] += field_energy(scene, seen) * fx128::lit(2.0);
         }
     }),
     ("box-tumbling", "the kinetic energy of the flight is 1 % off", |scene, seen, e| {
-        if e.balance == Balance::Energy {
+        if e.invariant == Invariant::Energy {
             let square = seen.vector(Quantity::Velocity).iter().fold(fx128::ZERO, |sum, &v| sum + v * v);
             e.value[0] += square * fx128::lit(0.005 * parameter(scene, "mass")[0]);
         }
@@ -44,7 +44,7 @@ const FAULTS: [(&str, &str, Fault); 6] = [
         e.value.iter_mut().for_each(|x| *x *= fx128::lit(1.0 + 1e-6));
     }),
     ("spring-chain", "the momentum is that of twice the mass", |_, _, e| {
-        if e.balance == Balance::Momentum {
+        if e.invariant == Invariant::Momentum {
             e.value.iter_mut().for_each(|x| *x *= fx128::lit(2.0));
         }
     }),
@@ -56,7 +56,7 @@ fn a_wrong_account_is_seen() {
     for (id, what, fault) in FAULTS {
         let scene = scenes::by_id(id).expect("a scene");
         let wrong = |t: fx128, seen: &Observation| {
-            let mut entries = scene.scene().account(t, seen);
+            let mut entries = scene.scene().invariants(t, seen);
             entries.iter_mut().for_each(|entry| fault(scene.as_ref(), seen, entry));
             entries
         };

@@ -344,7 +344,7 @@ fn rounds_alike(scene: &dyn AnyScene, t: f64) {
 fn solves_its_equation(scene: &dyn AnyScene, t: f64) {
     let rate = fastest(scene, t);
     let h = STEP / rate;
-    let breaks = scene.scene().breaks_s(t + 6.0 * h);
+    let breaks = scene.scene().nonsmooth_times_s(t + 6.0 * h);
     if rate * t > RESIDUAL_RADIANS || t <= 5.0 * h || breaks.iter().any(|at| (at - t).abs() <= 5.0 * h) {
         return;
     }

@@ -16,7 +16,7 @@ use measure::study::{Selection, Study};
 use measure::sweep::Progress;
 use reports::{Claim, Verdict};
 use scenes::any::AnyScene;
-use scenes::errors::Truth;
+use scenes::errors::ExactSamples;
 use scenes::parameters::Range;
 use scenes::run::Precision;
 use scenes::scheme::Scheme;
@@ -186,7 +186,7 @@ fn no_correct_method_gets_a_broken_claim_whatever_the_parameters() {
 /// The rows of a wrong method in f64, judged as those of the right one: its rounding is that of the right one.
 fn rows_of_mutant(scene: &dyn AnyScene, right: &[Row], mutant: Mutant, stepper: Stepper) -> Option<Vec<Row>> {
     let end_s = scene.scene().info().horizon_s;
-    let truth = Truth::of(scene, end_s);
+    let truth = ExactSamples::of(scene, end_s);
     let candidate = mutant.of(stepper);
     let mut steps: Vec<u64> = right.iter().map(|row| row.steps).collect();
     steps.dedup();

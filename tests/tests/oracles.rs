@@ -23,7 +23,7 @@ fn tolerance() -> f64 {
 fn solves_its_equation(scene: &dyn AnyScene, fraction: f64) {
     let info = scene.scene().info();
     let (t, h) = (fraction * info.horizon_s, STEP * info.time_scale_s);
-    if scene.scene().breaks_s(info.horizon_s).iter().any(|at| (at - t).abs() <= 5.0 * h) {
+    if scene.scene().nonsmooth_times_s(info.horizon_s).iter().any(|at| (at - t).abs() <= 5.0 * h) {
         return;
     }
     let found = scene.residual(fx128::lit(t), h);

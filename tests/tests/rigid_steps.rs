@@ -8,7 +8,7 @@ use integrator::methods::{
 };
 use integrator::pose::Fixed;
 use integrator::rigid_body::{
-    AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, Torque, WithoutGyroscopicTerm,
+    AttitudeUpdate, BodyOmega, Formulation, Kinematics, RigidBody, RigidModel, Torque, WithoutGyroscopicTerm,
     WorldMomentum, WorldOmega,
 };
 use integrator::rotation::cross;
@@ -190,7 +190,7 @@ fn pose([w, a, b, c, x, y, z]: [f64; 7]) -> Pose<f64> {
 /// The names are those of the command line and of the tables.
 #[test]
 fn storages_and_updates_have_their_names() {
-    let names = Storage::ALL.map(Storage::id);
+    let names = Formulation::ALL.map(Formulation::id);
     assert_eq!(names, ["world-omega", "body-omega", "world-momentum", "without-gyroscopic-term"]);
     assert_eq!(AttitudeUpdate::ALL.map(AttitudeUpdate::id), ["exponential", "linear"]);
     assert_eq!(Fixed::<f64>::zero().len(), 0);

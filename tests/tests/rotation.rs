@@ -2,7 +2,7 @@
 //! negative control: the same verdict on another scheme's numbers must be 'broken'.
 
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use measure::rotation::laws::{NUTATION_STEPS_S, TOPS, generic_body, nutation, nutation_factor, step_laws};
 use measure::rotation::long::{disc_runs, drift, long_run, long_starts};
 use measure::rotation::{Experiment, Rotation, Row, Scheme};
@@ -174,7 +174,7 @@ fn what_a_step_says_it_conserves_it_conserves_to_rounding() {
 #[test]
 fn without_the_gyroscopic_term_energy_and_momentum_are_conserved_and_the_motion_is_wrong() {
     let wrong =
-        Scheme::general(MethodId::SemiImplicitEuler, Storage::WithoutGyroscopicTerm, AttitudeUpdate::Exponential);
+        Scheme::general(MethodId::SemiImplicitEuler, Formulation::WithoutGyroscopicTerm, AttitudeUpdate::Exponential);
     let scene = scenes::by_id("torque-free-spin").expect("on the list");
     let end_s = scene.scene().info().horizon_s;
     let exact = scene.exact(integrator::Real::lit(end_s));
@@ -185,7 +185,7 @@ fn without_the_gyroscopic_term_energy_and_momentum_are_conserved_and_the_motion_
     // Not by the last digit, but by what is left of the motion after a few thousandths of a radian a step.
     let [coarse, fine] = [64, 4096].map(|steps| error(wrong, steps));
     assert!(coarse > 0.5 && (fine / coarse - 1.0).abs() < 1e-9, "{coarse} and {fine}");
-    let right = Scheme::general(MethodId::SemiImplicitEuler, Storage::WorldOmega, AttitudeUpdate::Exponential);
+    let right = Scheme::general(MethodId::SemiImplicitEuler, Formulation::WorldOmega, AttitudeUpdate::Exponential);
     let ratio = error(right, 2048) / error(right, 4096);
     assert!((ratio - 2.0).abs() < 0.02, "{ratio}");
     assert_all(&claims_as(&drift(&generic_body(), &[wrong]), &wrong.id()), Verdict::Holds, 2);

@@ -8,10 +8,10 @@ use scenes::theory::StabilityLimit;
 
 use measure::stability::answer::substeps;
 use measure::stability::failure::{Failure, Signal};
-use measure::stability::judge::{Trend, looks, trend};
 use measure::stability::maps::{DAMPED, boundary_distance};
 use measure::stability::models::Scheme;
 use measure::stability::spin::{FACTOR_TOLERANCE, SpinScheme};
+use measure::stability::trend::{Trend, samples, trend};
 use measure::stability::{Stability, amplification, claims, limits};
 use measure::study::{Selection, Study};
 use measure::sweep::Progress;
@@ -150,7 +150,7 @@ fn a_wrong_theory_is_caught_by_the_map() {
 #[test]
 fn growth_is_told_from_a_transient_a_drift_and_a_decay() {
     let of = |size: &dyn Fn(f64) -> f64| {
-        let sizes: Vec<(u64, f64)> = looks(16).into_iter().map(|n| (n, size(n as f64))).collect();
+        let sizes: Vec<(u64, f64)> = samples(16).into_iter().map(|n| (n, size(n as f64))).collect();
         trend(&sizes)
     };
     assert_eq!(of(&|n| 1.0 + (0.7 * n).sin().abs()), Some(Trend::Bounded));

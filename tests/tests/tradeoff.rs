@@ -12,12 +12,12 @@ use scenes::run::{Outcome, Precision};
 use measure::study::{Selection, Study};
 use measure::sweep::Progress;
 use measure::tradeoff::candidate::{Candidate, candidates};
+use measure::tradeoff::cost_at_error::{CostBound, offer, sweeps};
 use measure::tradeoff::front::front;
-use measure::tradeoff::iso::{Offer, offer, sweeps};
-use measure::tradeoff::ucurve::minima;
-use measure::tradeoff::vanish::{HEIGHTS_M, moves, predicted_s};
+use measure::tradeoff::rounding_optimum::minima;
+use measure::tradeoff::stagnation::{HEIGHTS_M, moves, predicted_s};
 use measure::tradeoff::verdict::{Factor, duels};
-use measure::tradeoff::{Charge, Part, Row, Tradeoff};
+use measure::tradeoff::{CostMeasure, Part, Row, Tradeoff};
 
 const SCENES: [&str; 5] = ["constant-force", "oscillator", "pendulum", "kepler", "tennis-racket"];
 
@@ -108,7 +108,7 @@ proptest! {
     #[test]
     fn a_front_holds_what_nothing_beats_and_nothing_that_failed(rows in prop::collection::vec(a_row(), 0..40)) {
         let rows: Vec<&Row> = rows.iter().collect();
-        for charge in Charge::ALL {
+        for charge in CostMeasure::ALL {
             let on_front = front(&rows, charge);
             let value = |i: usize| (charge.of(rows[i]), rows[i].error);
             for &i in &on_front {
@@ -146,16 +146,17 @@ fn the_price_of_a_level_is_interpolated_between_runs() {
         ..template.clone()
     };
     let falling: Vec<Row> = (3..12).map(|k| run(k, 0.7 / f64::from(1_u32 << k))).collect();
-    let price = |rows: &[Row], level: f64| match offer(&rows.iter().collect::<Vec<_>>(), level, Charge::Evaluations) {
-        Offer::At(price) => Some(price.cost),
-        _ => None,
-    };
+    let price =
+        |rows: &[Row], level: f64| match offer(&rows.iter().collect::<Vec<_>>(), level, CostMeasure::Evaluations) {
+            CostBound::At(price) => Some(price.cost),
+            _ => None,
+        };
     for level in [1e-2, 3.3e-3, 1e-3] {
         let cost = price(&falling, level).expect("met");
         assert!((cost / (0.7 / level) - 1.0).abs() < 1e-12, "{level}: {cost}");
     }
     assert_eq!(price(&falling, 1e-5), None, "beyond the finest run");
-    assert!(matches!(offer(&falling.iter().collect::<Vec<_>>(), 1e-5, Charge::Evaluations), Offer::Above(_)));
+    assert!(matches!(offer(&falling.iter().collect::<Vec<_>>(), 1e-5, CostMeasure::Evaluations), CostBound::Above(_)));
     // A lucky run in between is no price.
     let mut lucky = falling.clone();
     lucky[1].error = Some(1e-4);
@@ -214,7 +215,7 @@ fn a_u_curve_has_its_minimum_inside_the_sweep() {
 /// where RK4 meets 1e-2 with its coarsest run and semi-implicit Euler misses 1e-4 with its finest.
 #[test]
 fn semi_implicit_euler_is_dear_where_the_error_is_small() {
-    let duels = duels(rows(), Charge::Evaluations);
+    let duels = duels(rows(), CostMeasure::Evaluations);
     for scene in ["oscillator", "pendulum", "kepler", "tennis-racket"] {
         let at =
             |level: f64| duels.iter().find(|d| d.scene == scene && d.level == level).expect("a level of the table");

@@ -7,7 +7,7 @@ use std::io::Read;
 
 use flate2::read::GzDecoder;
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 use measure::convergence::{Convergence, Row};
 use rayon::prelude::*;
 use reports::write_csv;
@@ -138,7 +138,7 @@ fn implicit_runs_and_the_steps_of_bodies_have_the_same_bits() {
             continue;
         }
         questions.extend(RigidStep::ALL.iter().map(|step| long(&format!("step {}", step.id()), scene, "f64", 100_000)));
-        let storages = Storage::ALL.iter().map(|storage| format!("storage {}", storage.id()));
+        let storages = Formulation::ALL.iter().map(|storage| format!("storage {}", storage.id()));
         questions.extend(
             storages.map(|storage| long(&format!("method rk4\n{storage}\nupdate linear"), scene, "f64", 10_000)),
         );

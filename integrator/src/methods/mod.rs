@@ -102,7 +102,7 @@ pub use velocity_verlet::VelocityVerlet;
 use crate::model::{Method, Model};
 use crate::pose::{Body, Exponential, Linear, World};
 use crate::real::{Real, Single};
-use crate::rigid_body::{AttitudeUpdate, BodyOmega, RigidBody, RigidModel, Storage, WorldMomentum};
+use crate::rigid_body::{AttitudeUpdate, BodyOmega, Formulation, RigidBody, RigidModel, WorldMomentum};
 
 /// Work to be done with a method that is chosen at run time: one branch a run, none a step.
 pub trait Visitor<T: Real, M: Model<T>> {
@@ -261,8 +261,8 @@ macro_rules! rigid_list {
             }
 
             /// What it stores.
-            pub fn storage(self) -> Storage {
-                match self { $($list::$step => Storage::$model),* }
+            pub fn storage(self) -> Formulation {
+                match self { $($list::$step => Formulation::$model),* }
             }
 
             /// What it keeps to rounding without a torque.

@@ -26,7 +26,7 @@ pub struct Known {
 struct Scene {
     scene: Box<dyn AnyScene>,
     quantities: Vec<Quantity>,
-    balances: Vec<Drift>,
+    invariants: Vec<Drift>,
     methods: Vec<String>,
 }
 
@@ -83,7 +83,7 @@ impl Known {
         }
         let has = match row.quantity {
             Subject::Error(quantity) => scene.quantities.contains(&quantity),
-            Subject::Balance(drift) => scene.balances.contains(&drift),
+            Subject::Invariant(drift) => scene.invariants.contains(&drift),
             Subject::Step => self.method(row).is_ok_and(|stepper| has_limit(scene.scene.as_ref(), stepper)),
             Subject::Evaluations => true,
         };
@@ -135,10 +135,10 @@ impl Known {
         for (&id, scene) in &self.scenes {
             for method in Stepper::all(scene.scene.as_ref()) {
                 let errors = scene.quantities.iter().map(|&quantity| Subject::Error(quantity));
-                let balances = scene.balances.iter().filter(|d| **d != Drift::QuaternionNorm);
+                let invariants = scene.invariants.iter().filter(|d| **d != Drift::QuaternionNorm);
                 let step = has_limit(scene.scene.as_ref(), method).then_some(Subject::Step);
-                let balances = balances.map(|&drift| Subject::Balance(drift));
-                let subjects = errors.chain(balances).chain(step).chain([Subject::Evaluations]);
+                let invariants = invariants.map(|&drift| Subject::Invariant(drift));
+                let subjects = errors.chain(invariants).chain(step).chain([Subject::Evaluations]);
                 all.extend(subjects.map(|subject| (id, method.id(), subject)));
             }
         }
@@ -168,11 +168,11 @@ fn has_limit(scene: &dyn AnyScene, stepper: Stepper) -> bool {
 impl Scene {
     fn of(scene: Box<dyn AnyScene>) -> Self {
         let start = scene.exact(fx128::ZERO);
-        let account = scene.scene().account(fx128::ZERO, &start);
+        let invariants = scene.scene().invariants(fx128::ZERO, &start);
         let norm = start.rotation().map(|_| Drift::QuaternionNorm);
         Scene {
             quantities: start.values.iter().map(|(quantity, _)| *quantity).collect(),
-            balances: drifts(&account, &account).into_iter().map(|(drift, _)| drift).chain(norm).collect(),
+            invariants: drifts(&invariants, &invariants).into_iter().map(|(drift, _)| drift).chain(norm).collect(),
             methods: Stepper::all(scene.as_ref()).into_iter().map(Stepper::id).collect(),
             scene,
         }

@@ -56,7 +56,7 @@ impl Measured {
 }
 
 /// Observations of a long run.
-const LOOKS: u64 = 1024;
+const SAMPLES: u64 = 1024;
 /// Stretches of a long run, of whose largest values a rate is fitted.
 const STRETCHES: usize = 128;
 /// A run whose step is stable up to this many time scales has no limit for the purpose of a bound.
@@ -81,7 +81,7 @@ struct End {
     evaluations: u64,
 }
 
-/// What is left of a run that was looked at all along: the time and the errors of each balance.
+/// What is left of a run that was looked at all along: the time and the errors of each invariant.
 #[derive(Clone)]
 struct Long {
     outcome: Outcome,
@@ -109,7 +109,7 @@ impl<'a> Runs<'a> {
             (Subject::Error(quantity), Kind::Order) => self.order(quantity, row.steps, row.end_s),
             (Subject::Error(quantity), Kind::ErrorConstant) => self.constant(quantity, row),
             (Subject::Error(quantity), _) => self.error(quantity, row.steps, row.end_s),
-            (Subject::Balance(drift), kind) => self.along(drift, kind, row.steps, row.end_s),
+            (Subject::Invariant(drift), kind) => self.along(drift, kind, row.steps, row.end_s),
             (Subject::Step, _) => return self.limit(),
             (Subject::Evaluations, _) => {
                 self.end(row.steps, row.end_s).map(|end| end.evaluations as f64 / row.steps as f64)
@@ -200,7 +200,7 @@ impl<'a> Runs<'a> {
     }
 
     fn exponent(&self, envelope: &[Envelope]) -> Result<f64, Measured> {
-        // Rounding of the balance itself, as the drift study takes it.
+        // Rounding of the invariant itself, as the drift study takes it.
         let seen = growth::classify(envelope, 256.0 * self.precision.epsilon());
         seen.exponent.ok_or(Measured::Undefined(format!("{}: {}", seen.law, seen.evidence)))
     }
@@ -219,17 +219,17 @@ impl<'a> Runs<'a> {
 
     fn look(&self, steps: u64, end_s: f64) -> Option<Long> {
         let scene = self.scene.scene();
-        let trajectory = self.trajectory(steps, end_s, (steps / LOOKS).max(1))?;
+        let trajectory = self.trajectory(steps, end_s, (steps / SAMPLES).max(1))?;
         let time = |step: u64| fx128::lit(end_s) * fx128::lit(step as f64) / fx128::lit(steps as f64);
-        let first = scene.account(fx128::ZERO, &self.scene.exact(fx128::ZERO));
+        let first = scene.invariants(fx128::ZERO, &self.scene.exact(fx128::ZERO));
         let conserved = first.iter().all(|entry| entry.conserved);
         let errors = |(step, seen): &(u64, Observation)| {
             let t = time(*step);
-            let account = scene.account(t, seen);
+            let invariants = scene.invariants(t, seen);
             let mut errors = if conserved {
-                drifts(&account, &first)
+                drifts(&invariants, &first)
             } else {
-                drifts(&account, &scene.account(t, &self.scene.exact(t)))
+                drifts(&invariants, &scene.invariants(t, &self.scene.exact(t)))
             };
             if seen.rotation().is_some() {
                 errors.push((Drift::QuaternionNorm, seen.norm_error));

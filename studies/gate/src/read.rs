@@ -31,7 +31,7 @@ const HEAD: &str = "\
 #   order                 2 p(n/2,n) - p(n/4,n/2), p(m,n) = log2(error(m)/error(n)): the order, extrapolated to h = 0
 #   error-at-step         distance from the exact motion at end_s
 #   error-constant        2 c(n) - c(n/2), c = error/h^p: extrapolated to h = 0
-#   drift                 largest error of a balance along the run, over the balance at the start (rad for a direction)
+#   drift                 largest error of an invariant along the run, over the invariant at the start (rad for a direction)
 #   growth-law            p of error ~ t^p over the last decade of the run
 #   growth-rate           r of E/E0 = exp(r t)
 #   stability-limit       largest stable step over the scene's time scale; 0: none, 1024: no limit found

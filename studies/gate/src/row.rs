@@ -17,7 +17,7 @@ pub enum Kind {
     ErrorAtStep,
     /// 2 c(n) - c(n/2) with c = error / h^p and p the order of theory: the error constant, extrapolated to h = 0.
     ErrorConstant,
-    /// The largest error of a balance along a run, as a part of the balance at the start.
+    /// The largest error of an invariant along a run, as a part of the invariant at the start.
     Drift,
     /// p of error ~ t^p over the last decade of a run.
     GrowthLaw,
@@ -85,8 +85,8 @@ impl Kind {
 pub enum Subject {
     /// The error of an observed quantity.
     Error(Quantity),
-    /// The error of a balance.
-    Balance(Drift),
+    /// The error of an invariant.
+    Invariant(Drift),
     /// The step.
     Step,
     /// Evaluations of the force law.
@@ -97,15 +97,15 @@ impl Subject {
     /// Every one.
     pub fn all() -> Vec<Subject> {
         let errors = Quantity::ALL.map(Subject::Error);
-        let balances = Drift::ALL.map(Subject::Balance);
-        errors.into_iter().chain(balances).chain([Subject::Step, Subject::Evaluations]).collect()
+        let invariants = Drift::ALL.map(Subject::Invariant);
+        errors.into_iter().chain(invariants).chain([Subject::Step, Subject::Evaluations]).collect()
     }
 
     /// The name in the file.
     pub fn id(self) -> &'static str {
         match self {
             Subject::Error(quantity) => quantity.id(),
-            Subject::Balance(drift) => drift.id(),
+            Subject::Invariant(drift) => drift.id(),
             Subject::Step => "step",
             Subject::Evaluations => "evaluations",
         }
@@ -125,7 +125,7 @@ impl Subject {
     pub fn has(self, kind: Kind) -> bool {
         match self {
             Subject::Error(_) => matches!(kind, Kind::Order | Kind::ErrorAtStep | Kind::ErrorConstant),
-            Subject::Balance(_) => matches!(kind, Kind::Drift | Kind::GrowthLaw | Kind::GrowthRate),
+            Subject::Invariant(_) => matches!(kind, Kind::Drift | Kind::GrowthLaw | Kind::GrowthRate),
             Subject::Step => kind == Kind::StabilityLimit,
             Subject::Evaluations => kind == Kind::EvaluationsPerStep,
         }
@@ -136,7 +136,7 @@ impl Subject {
         match (self, kind) {
             (Subject::Error(quantity), Kind::ErrorAtStep) => quantity.unit().to_owned(),
             (Subject::Error(quantity), Kind::ErrorConstant) => format!("{}/s^{order}", quantity.unit()),
-            (Subject::Balance(Drift::MomentumDirection | Drift::AngularMomentumDirection), Kind::Drift) => {
+            (Subject::Invariant(Drift::MomentumDirection | Drift::AngularMomentumDirection), Kind::Drift) => {
                 "rad".to_owned()
             }
             (_, Kind::GrowthRate) => "1/s".to_owned(),

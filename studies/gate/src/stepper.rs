@@ -1,7 +1,7 @@
 //! The methods by the names of the file.
 
 use integrator::methods::MethodId;
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 
 use measure::error::Error;
 use measure::rotation::{Rule, Scheme};
@@ -74,7 +74,9 @@ impl Stepper {
     /// velocity in the world frame and turns by the exponential map.
     pub fn of_theory(self) -> Option<MethodId> {
         match self {
-            Stepper::Turning(s) if (s.storage, s.update) != (Storage::WorldOmega, AttitudeUpdate::Exponential) => None,
+            Stepper::Turning(s) if (s.storage, s.update) != (Formulation::WorldOmega, AttitudeUpdate::Exponential) => {
+                None
+            }
             _ => self.method(),
         }
     }

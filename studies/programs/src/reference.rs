@@ -1,7 +1,7 @@
 //! Methods and scenes as the report explains them: formula, source, parameters, and what theory says beforehand.
 
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 use reports::{Block, Section, Table};
 
 use measure::names::{anchor, scene_title};
@@ -54,7 +54,7 @@ fn step_group(step: RigidStep) -> Block {
 }
 
 fn stored() -> Block {
-    let one = |storage: Storage| {
+    let one = |storage: Formulation| {
         [
             Block::Text(format!("{}:", scene_title(storage.id()).replace("omega", "ω"))),
             Block::Formula(equation(storage).to_owned()),
@@ -64,19 +64,21 @@ fn stored() -> Block {
         id: "method-storage".to_owned(),
         title: "What a rigid body stores".to_owned(),
         note: "four models of the same motion, one of them wrong".to_owned(),
-        blocks: Storage::ALL.into_iter().flat_map(one).collect(),
+        blocks: Formulation::ALL.into_iter().flat_map(one).collect(),
     }
 }
 
 /// The equation of motion that a model of a rigid body integrates.
-fn equation(storage: Storage) -> &'static str {
+fn equation(storage: Formulation) -> &'static str {
     match storage {
-        Storage::WorldOmega => {
+        Formulation::WorldOmega => {
             r"I_w\,\dot\omega = \tau - \omega\times I_w\omega,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
         }
-        Storage::BodyOmega => r"I\,\dot\omega = \tau + I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
-        Storage::WorldMomentum => r"\dot L = \tau,\quad \omega = R\,I^{-1} R^{T} L,\quad \dot q = \tfrac12\,\omega\,q",
-        Storage::WithoutGyroscopicTerm => {
+        Formulation::BodyOmega => r"I\,\dot\omega = \tau + I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
+        Formulation::WorldMomentum => {
+            r"\dot L = \tau,\quad \omega = R\,I^{-1} R^{T} L,\quad \dot q = \tfrac12\,\omega\,q"
+        }
+        Formulation::WithoutGyroscopicTerm => {
             r"I_w\,\dot\omega = \tau,\quad I_w = R\,I R^{T},\quad \dot q = \tfrac12\,\omega\,q"
         }
     }
@@ -160,7 +162,7 @@ mod tests {
     fn every_formula_can_be_typeset() {
         let methods = MethodId::ALL.iter().flat_map(|&m| m.facts().latex).copied();
         let steps = RigidStep::ALL.iter().flat_map(|&s| s.facts().latex).copied();
-        let stored = Storage::ALL.into_iter().map(equation);
+        let stored = Formulation::ALL.into_iter().map(equation);
         let motions: Vec<_> = scenes::all().iter().map(|scene| scene.scene().info().equation).collect();
         for latex in methods.chain(steps).chain(stored).chain(motions) {
             let mathml = reports::mathml(latex).unwrap_or_else(|error| panic!("{error}"));

@@ -12,7 +12,7 @@ use crate::residual::{Residual, residual};
 use crate::run::{Place, Precision, Run, Shown, Trajectory, run_flat};
 use crate::scene::Scene;
 use crate::timed;
-use crate::timed::{Lap, Laps};
+use crate::timed::{Repetitions, Timing};
 use crate::variation::{Leading, leading};
 
 /// A scene whose arithmetic is chosen at run time: one virtual call a trajectory, none a step.
@@ -49,12 +49,12 @@ pub trait AnyScene: Send + Sync {
 
     /// Times a run that nobody observes, in code compiled for it alone; `None` for what is not compiled so: see
     /// [`timed`].
-    fn time(&self, run: &Run, laps: Laps) -> Option<Lap>;
+    fn time(&self, run: &Run, laps: Repetitions) -> Option<Timing>;
 
     /// Runs one trajectory from the start moved by `displacement` (configuration, then velocity) and observes it at the
-    /// steps `looks`; `None` on a curved space.
-    fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
-        let _ = (run, displacement, looks);
+    /// steps `samples`; `None` on a curved space.
+    fn run_displaced(&self, run: &Run, displacement: &[f64], samples: &[u64]) -> Option<Trajectory> {
+        let _ = (run, displacement, samples);
         None
     }
 
@@ -106,16 +106,16 @@ impl<S: Scene + Motion<f32> + Motion<f64, Config: FlatSpace> + Motion<fx128>> An
     fn show(&self, run: &Run, shown: Shown<'_>) -> Option<Trajectory> {
         in_precision!(run.precision, T => run_flat::<T, <S as Model<T>>::Config>(&self.scene, run, shown))
     }
-    fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
+    fn time(&self, run: &Run, laps: Repetitions) -> Option<Timing> {
         match run.precision {
             Precision::F32 => timed::particles_explicit::<f32, S>(&self.scene, run, laps),
             Precision::F64 => timed::particles(&self.scene, run, laps),
             Precision::DoubleDouble => None,
         }
     }
-    fn run_displaced(&self, run: &Run, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
+    fn run_displaced(&self, run: &Run, displacement: &[f64], samples: &[u64]) -> Option<Trajectory> {
         in_precision!(run.precision, T => {
-            run_displaced::<T, <S as Model<T>>::Config>(&self.scene, run, displacement, looks)
+            run_displaced::<T, <S as Model<T>>::Config>(&self.scene, run, displacement, samples)
         })
     }
     fn leading(&self, end_s: f64) -> Vec<Leading> {
@@ -161,7 +161,7 @@ where
             <B as RigidBody<T>>::Position::show(&self.scene, start, run, shown)
         }))
     }
-    fn time(&self, run: &Run, laps: Laps) -> Option<Lap> {
+    fn time(&self, run: &Run, laps: Repetitions) -> Option<Timing> {
         match run.precision {
             _ if run.scheme.update != AttitudeUpdate::Exponential => None,
             Precision::F32 => timed::body_explicit::<f32, B>(&self.scene, run, laps),

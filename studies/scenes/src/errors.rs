@@ -14,9 +14,9 @@ use crate::scheme::Scheme;
 pub use crate::run::CHECKPOINTS;
 
 /// The exact motion of a scene at evenly spaced times of every run, k T / n for k = 0..n.
-pub struct Truth {
+pub struct ExactSamples {
     end_s: f64,
-    looks: Vec<Observation>,
+    samples: Vec<Observation>,
 }
 
 /// The errors of one quantity in one run. What a failed run leaves open is `None`.
@@ -37,20 +37,20 @@ pub struct Errors {
     pub scale: f64,
 }
 
-impl Truth {
+impl ExactSamples {
     /// Evaluates the exact motion of a scene at the checkpoints up to `end_s`.
     pub fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
         Self::up_to(scene, end_s, CHECKPOINTS)
     }
 
-    /// Evaluates the exact motion of a scene at k T / `looks`.
-    pub fn up_to(scene: &dyn AnyScene, end_s: f64, looks: u64) -> Self {
-        Truth { end_s, looks: (0..=looks).map(|k| exact_at(scene, end_s, k, looks)).collect() }
+    /// Evaluates the exact motion of a scene at k T / `samples`.
+    pub fn up_to(scene: &dyn AnyScene, end_s: f64, samples: u64) -> Self {
+        ExactSamples { end_s, samples: (0..=samples).map(|k| exact_at(scene, end_s, k, samples)).collect() }
     }
 
-    /// The exact motion at the looks, the start and the end among them.
-    pub fn looks(&self) -> &[Observation] {
-        &self.looks
+    /// The exact motion at the samples, the start and the end among them.
+    pub fn samples(&self) -> &[Observation] {
+        &self.samples
     }
 
     /// Steps between two looks at a run of so many steps.
@@ -59,14 +59,14 @@ impl Truth {
     }
 
     fn parts(&self) -> u64 {
-        self.looks.len() as u64 - 1
+        self.samples.len() as u64 - 1
     }
 
-    /// The exact motion at a step. Where the number of steps is a multiple of the looks, the looks are steps.
+    /// The exact motion at a step. Where the number of steps is a multiple of the samples, the samples are steps.
     pub fn at_step(&self, scene: &dyn AnyScene, step: u64, steps: u64) -> Cow<'_, Observation> {
         let scaled = u128::from(step) * u128::from(self.parts());
         if scaled.is_multiple_of(u128::from(steps)) {
-            Cow::Borrowed(&self.looks[(scaled / u128::from(steps)) as usize])
+            Cow::Borrowed(&self.samples[(scaled / u128::from(steps)) as usize])
         } else {
             Cow::Owned(exact_at(scene, self.end_s, step, steps))
         }
@@ -89,7 +89,7 @@ impl Truth {
             max: if finished { errors.get(&quantity).copied() } else { None },
             rounding_end: pick(&rounding_end, quantity),
             rounding_max: if finished { rounding.get(&quantity).copied() } else { None },
-            scale: self.looks.iter().map(|look| look.scale(quantity)).fold(last.scale(quantity), f64::max),
+            scale: self.samples.iter().map(|look| look.scale(quantity)).fold(last.scale(quantity), f64::max),
         };
         last.values.iter().map(of).collect()
     }

@@ -1,12 +1,12 @@
-//! What a scene keeps account of: energy and momenta.
+//! The invariants of a scene: energy and momenta.
 
 use faer::fx128;
 use serde::{Deserialize, Serialize};
 
-/// A quantity that a scene keeps account of.
+/// An energy or a momentum of a scene, conserved or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Balance {
+pub enum Invariant {
     /// Kinetic plus potential energy, J.
     Energy,
     /// Linear momentum, kg m/s.
@@ -15,31 +15,31 @@ pub enum Balance {
     AngularMomentum,
 }
 
-impl Balance {
+impl Invariant {
     /// The name in tables.
     pub fn id(self) -> &'static str {
         match self {
-            Balance::Energy => "energy",
-            Balance::Momentum => "momentum",
-            Balance::AngularMomentum => "angular-momentum",
+            Invariant::Energy => "energy",
+            Invariant::Momentum => "momentum",
+            Invariant::AngularMomentum => "angular-momentum",
         }
     }
 
     /// Its unit.
     pub fn unit(self) -> &'static str {
         match self {
-            Balance::Energy => "J",
-            Balance::Momentum => "kg m/s",
-            Balance::AngularMomentum => "kg m^2/s",
+            Invariant::Energy => "J",
+            Invariant::Momentum => "kg m/s",
+            Invariant::AngularMomentum => "kg m^2/s",
         }
     }
 }
 
-/// One line of a scene's account.
+/// One invariant of a scene with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// What is accounted for.
-    pub balance: Balance,
+    pub invariant: Invariant,
     /// Its value: one component for a scalar, three for a vector.
     pub value: Vec<fx128>,
     /// Whether the exact motion conserves it.

@@ -5,7 +5,7 @@ use integrator::counted::Counted;
 use integrator::methods::{MethodId, RigidVisitor, Visitor};
 use integrator::pose::{Body, Exponential, Fixed, Linear, World};
 use integrator::rigid_body::{
-    AttitudeUpdate, BodyOmega, Kinematics, RigidBody, RigidModel, Storage, WithoutGyroscopicTerm, WorldMomentum,
+    AttitudeUpdate, BodyOmega, Formulation, Kinematics, RigidBody, RigidModel, WithoutGyroscopicTerm, WorldMomentum,
     WorldOmega,
 };
 use integrator::{Method, Model, Single, Space, State, Vector, drive};
@@ -169,18 +169,18 @@ pub(crate) fn run_flat<T: Single, Q: Space<Scalar = T>>(
 ) -> Option<Trajectory> {
     let Rule::General(method) = run.scheme.rule else { return None };
     let counted = Counted::new(motion);
-    let samples = method.visit(Flat { model: &counted, motion, run, shown });
+    let samples = method.visit(FlatRun { model: &counted, motion, run, shown });
     Some(samples.trajectory(method.is_implicit(), counted.evaluations()))
 }
 
-struct Flat<'a, T: Single, Q: Space<Scalar = T>> {
+struct FlatRun<'a, T: Single, Q: Space<Scalar = T>> {
     model: &'a Counted<AnyFlat<'a, T, Q>>,
     motion: AnyFlat<'a, T, Q>,
     run: &'a Run,
     shown: Shown<'a>,
 }
 
-impl<'a, T: Single, Q: Space<Scalar = T>> Visitor<T, Counted<AnyFlat<'a, T, Q>>> for Flat<'a, T, Q> {
+impl<'a, T: Single, Q: Space<Scalar = T>> Visitor<T, Counted<AnyFlat<'a, T, Q>>> for FlatRun<'a, T, Q> {
     type Output = Samples;
 
     fn visit<A: Method<T, Counted<AnyFlat<'a, T, Q>>>>(self, method: &A) -> Samples {
@@ -228,39 +228,39 @@ fn run_body<T: Single, P: Vector<T>>(
     let method = match rule {
         Rule::General(method) => method,
         Rule::Rigid(step) => {
-            let samples = step.visit::<T, _, _>(update, &counted, Turn { start, run, shown });
+            let samples = step.visit::<T, _, _>(update, &counted, RigidStepRun { start, run, shown });
             return samples.trajectory(false, counted.evaluations());
         }
     };
     macro_rules! with {
         ($model:ident, $update:ident<$frame:ident>) => {{
             let model = $model::<_, $update<$frame>>::new(&counted);
-            method.visit(Turning { model: &model, start, run, shown })
+            method.visit(RigidRun { model: &model, start, run, shown })
         }};
     }
     use AttitudeUpdate as U;
     let samples = match (storage, update) {
-        (Storage::WorldOmega, U::Exponential) => with!(WorldOmega, Exponential<World>),
-        (Storage::WorldOmega, U::Linear) => with!(WorldOmega, Linear<World>),
-        (Storage::BodyOmega, U::Exponential) => with!(BodyOmega, Exponential<Body>),
-        (Storage::BodyOmega, U::Linear) => with!(BodyOmega, Linear<Body>),
-        (Storage::WorldMomentum, U::Exponential) => with!(WorldMomentum, Exponential<World>),
-        (Storage::WorldMomentum, U::Linear) => with!(WorldMomentum, Linear<World>),
-        (Storage::WithoutGyroscopicTerm, U::Exponential) => with!(WithoutGyroscopicTerm, Exponential<World>),
-        (Storage::WithoutGyroscopicTerm, U::Linear) => with!(WithoutGyroscopicTerm, Linear<World>),
+        (Formulation::WorldOmega, U::Exponential) => with!(WorldOmega, Exponential<World>),
+        (Formulation::WorldOmega, U::Linear) => with!(WorldOmega, Linear<World>),
+        (Formulation::BodyOmega, U::Exponential) => with!(BodyOmega, Exponential<Body>),
+        (Formulation::BodyOmega, U::Linear) => with!(BodyOmega, Linear<Body>),
+        (Formulation::WorldMomentum, U::Exponential) => with!(WorldMomentum, Exponential<World>),
+        (Formulation::WorldMomentum, U::Linear) => with!(WorldMomentum, Linear<World>),
+        (Formulation::WithoutGyroscopicTerm, U::Exponential) => with!(WithoutGyroscopicTerm, Exponential<World>),
+        (Formulation::WithoutGyroscopicTerm, U::Linear) => with!(WithoutGyroscopicTerm, Linear<World>),
     };
     samples.trajectory(method.is_implicit(), counted.evaluations())
 }
 
 /// A rigid body in what its model stores, with a general method.
-struct Turning<'a, T: Single, M: RigidModel<T>> {
+struct RigidRun<'a, T: Single, M: RigidModel<T>> {
     model: &'a M,
     start: Kinematics<T, <M::Body as RigidBody<T>>::Position>,
     run: &'a Run,
     shown: Shown<'a>,
 }
 
-impl<T: Single, M: RigidModel<T>> Visitor<T, M> for Turning<'_, T, M> {
+impl<T: Single, M: RigidModel<T>> Visitor<T, M> for RigidRun<'_, T, M> {
     type Output = Samples;
 
     fn visit<A: Method<T, M>>(self, method: &A) -> Samples {
@@ -270,13 +270,13 @@ impl<T: Single, M: RigidModel<T>> Visitor<T, M> for Turning<'_, T, M> {
 }
 
 /// A rigid body whose model the step chooses.
-struct Turn<'a, T: Single, P> {
+struct RigidStepRun<'a, T: Single, P> {
     start: Kinematics<T, P>,
     run: &'a Run,
     shown: Shown<'a>,
 }
 
-impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for Turn<'_, T, B::Position> {
+impl<T: Single, B: RigidBody<T>> RigidVisitor<T, B> for RigidStepRun<'_, T, B::Position> {
     type Output = Samples;
 
     fn visit<M: RigidModel<T, Body = B>, A: Method<T, M>>(self, method: &A, model: &M) -> Samples {

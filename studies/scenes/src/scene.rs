@@ -6,7 +6,7 @@ use faer::fx128;
 use integrator::methods::MethodId;
 
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::Parameters;
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
@@ -42,10 +42,10 @@ pub trait Scene: Parameters + Any + Send + Sync {
     }
 
     /// Energy and momenta of an observed state.
-    fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry>;
+    fn invariants(&self, t: fx128, seen: &Observation) -> Vec<Entry>;
 
     /// Times up to `end_s` at which the exact motion is not smooth: bounces, kinks of the force.
-    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
+    fn nonsmooth_times_s(&self, end_s: f64) -> Vec<f64> {
         let _ = end_s;
         Vec::new()
     }
@@ -77,9 +77,9 @@ pub trait Scene: Parameters + Any + Send + Sync {
         Theory::usual(method)
     }
 
-    /// What theory says of the error of a balance over a long run with the step `h_s`, where it says anything.
-    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
-        let _ = (method, balance, h_s);
+    /// What theory says of the error of an invariant over a long run with the step `h_s`, where it says anything.
+    fn growth(&self, method: MethodId, invariant: Invariant, h_s: f64) -> Option<ExpectedGrowth> {
+        let _ = (method, invariant, h_s);
         None
     }
 
@@ -97,13 +97,13 @@ impl dyn Scene + '_ {
         if method.facts().worked_out {
             self.theory(method, quantity, end_s)
         } else {
-            Theory::least(method, self.breaks_s(end_s).is_empty())
+            Theory::least(method, self.nonsmooth_times_s(end_s).is_empty())
         }
     }
 
-    /// The growth of the error of a balance over a long run with the step `h_s`.
-    pub fn expected_growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
-        method.facts().worked_out.then(|| self.growth(method, balance, h_s))?
+    /// The growth of the error of an invariant over a long run with the step `h_s`.
+    pub fn expected_growth(&self, method: MethodId, invariant: Invariant, h_s: f64) -> Option<ExpectedGrowth> {
+        method.facts().worked_out.then(|| self.growth(method, invariant, h_s))?
     }
 
     /// The largest stable step, and where the formula comes from.

@@ -1,7 +1,7 @@
 //! How to step: a rule of a step, what a rigid body stores, how its attitude is advanced.
 
 use integrator::methods::{Facts, MethodId, RigidStep};
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 
 /// The rule of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Scheme {
     /// The rule of a step.
     pub rule: Rule,
     /// What the body stores.
-    pub storage: Storage,
+    pub storage: Formulation,
     /// How the attitude is advanced.
     pub update: AttitudeUpdate,
 }
@@ -26,7 +26,7 @@ pub struct Scheme {
 /// The method with the formulation and the attitude update that a rigid body has by default.
 impl From<MethodId> for Scheme {
     fn from(method: MethodId) -> Self {
-        Scheme::general(method, Storage::default(), AttitudeUpdate::default())
+        Scheme::general(method, Formulation::default(), AttitudeUpdate::default())
     }
 }
 
@@ -39,7 +39,7 @@ impl From<RigidStep> for Scheme {
 
 impl Scheme {
     /// A general method.
-    pub fn general(method: MethodId, storage: Storage, update: AttitudeUpdate) -> Self {
+    pub fn general(method: MethodId, storage: Formulation, update: AttitudeUpdate) -> Self {
         Scheme { rule: Rule::General(method), storage, update }
     }
 
@@ -52,11 +52,11 @@ impl Scheme {
     pub fn all() -> Vec<Scheme> {
         use AttitudeUpdate::{Exponential, Linear};
         let mut all = Vec::new();
-        for storage in Storage::ALL {
+        for storage in Formulation::ALL {
             // Where the frame turns with the step, equations are solved only for what a symplectic method keeps.
             let takes = |method: &MethodId| match storage {
-                Storage::BodyOmega => true,
-                Storage::WithoutGyroscopicTerm => !method.is_implicit(),
+                Formulation::BodyOmega => true,
+                Formulation::WithoutGyroscopicTerm => !method.is_implicit(),
                 _ => !method.is_implicit() || method.facts().symplectic == Some(true),
             };
             let methods = || MethodId::ALL.iter().copied().filter(takes);
@@ -93,10 +93,10 @@ impl Scheme {
     /// The name in a chart.
     pub fn label(self) -> String {
         let stored = match self.storage {
-            Storage::WorldOmega => "world ω",
-            Storage::BodyOmega => "body ω",
-            Storage::WorldMomentum => "world L",
-            Storage::WithoutGyroscopicTerm => "no gyroscopic term",
+            Formulation::WorldOmega => "world ω",
+            Formulation::BodyOmega => "body ω",
+            Formulation::WorldMomentum => "world L",
+            Formulation::WithoutGyroscopicTerm => "no gyroscopic term",
         };
         let rule = match self.rule {
             Rule::General(method) => format!("{}, {stored}", method.title()),
@@ -125,6 +125,6 @@ impl Scheme {
 
     /// Whether the gyroscopic term is left out.
     pub fn lacks_gyroscopic_term(self) -> bool {
-        self.storage == Storage::WithoutGyroscopicTerm
+        self.storage == Formulation::WithoutGyroscopicTerm
     }
 }

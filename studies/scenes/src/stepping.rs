@@ -21,9 +21,9 @@ pub struct Stepping<'a> {
 
 impl Stepping<'_> {
     /// `steps` steps of length `h_s` from the start moved by `displacement`; `None` where the scene's space is curved.
-    pub fn walk(&self, h_s: f64, steps: u64, displacement: &[f64], looks: &[u64]) -> Option<Trajectory> {
+    pub fn walk(&self, h_s: f64, steps: u64, displacement: &[f64], samples: &[u64]) -> Option<Trajectory> {
         let run = Run::new(self.method, self.precision, h_s * steps as f64, steps);
-        self.scene.run_displaced(&run, displacement, looks)
+        self.scene.run_displaced(&run, displacement, samples)
     }
 }
 

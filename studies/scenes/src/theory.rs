@@ -109,7 +109,7 @@ impl Theory {
     }
 }
 
-/// How theory says that the error of a balance grows over a long run.
+/// How theory says that the error of an invariant grows over a long run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedGrowth {
     /// The law.

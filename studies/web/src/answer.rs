@@ -7,7 +7,7 @@ use integrator::{Real, Single};
 use scenes::any::AnyScene;
 use scenes::error::Error;
 use scenes::errors;
-use scenes::errors::Truth;
+use scenes::errors::ExactSamples;
 use scenes::observation::{Observation, Value};
 use scenes::run::{Outcome, Precision, Trajectory};
 use scenes::scheme::Rule;
@@ -29,7 +29,7 @@ struct Loaded {
     id: String,
     set: Vec<(String, String)>,
     scene: Box<dyn AnyScene>,
-    truth: Option<Truth>,
+    truth: Option<ExactSamples>,
 }
 
 impl Desk {
@@ -103,7 +103,7 @@ fn head(run: &Trajectory) -> Vec<f64> {
     vec![outcome, run.failed_step.unwrap_or(0) as f64, run.evaluations as f64, 0.0]
 }
 
-/// Every component of every quantity (an attitude as w, x, y, z), then of every balance.
+/// Every component of every quantity (an attitude as w, x, y, z), then of every invariant.
 fn observed(scene: &dyn AnyScene, t: fx128, seen: &Observation, numbers: &mut Vec<f64>) {
     for (_, value) in &seen.values {
         match value {
@@ -111,7 +111,7 @@ fn observed(scene: &dyn AnyScene, t: fx128, seen: &Observation, numbers: &mut Ve
             Value::Rotation(q) => numbers.extend([q.w, q.v.x, q.v.y, q.v.z].map(Single::to_f64)),
         }
     }
-    for entry in scene.scene().account(t, seen) {
+    for entry in scene.scene().invariants(t, seen) {
         numbers.extend(entry.value.iter().map(|x| x.to_f64()));
     }
 }
@@ -133,7 +133,7 @@ impl Loaded {
     /// where there is none, or where it was not asked for.
     fn errors(&mut self, question: &Question) -> Result<Vec<f64>, Error> {
         let scene = self.scene.as_ref();
-        let truth = self.truth.get_or_insert_with(|| Truth::of(scene, scene.scene().info().horizon_s));
+        let truth = self.truth.get_or_insert_with(|| ExactSamples::of(scene, scene.scene().info().horizon_s));
         let stride = if question.checkpoints { errors::stride(question.steps) } else { question.steps };
         let end_s = scene.scene().info().horizon_s;
         let run = |precision| trajectory(scene, &Question { end_s, stride, precision, ..question.clone() });
@@ -166,7 +166,7 @@ fn amplification(scene: &dyn AnyScene, question: &Question) -> Result<Vec<f64>, 
     Ok(numbers)
 }
 
-/// Lines of tab-separated fields: the scene, its parameters, quantities and balances.
+/// Lines of tab-separated fields: the scene, its parameters, quantities and invariants.
 fn describe(scene: &dyn AnyScene) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -188,9 +188,9 @@ fn describe(scene: &dyn AnyScene) -> String {
         };
         line(&["quantity", quantity.id(), quantity.unit(), &width.to_string()]);
     }
-    for entry in stated.account(fx128::ZERO, &start) {
+    for entry in stated.invariants(fx128::ZERO, &start) {
         let conserved = if entry.conserved { "conserved" } else { "changing" };
-        line(&["balance", entry.balance.id(), entry.balance.unit(), &entry.value.len().to_string(), conserved]);
+        line(&["invariant", entry.invariant.id(), entry.invariant.unit(), &entry.value.len().to_string(), conserved]);
     }
     text
 }

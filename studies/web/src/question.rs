@@ -1,7 +1,7 @@
 //! A question: what to do, with which scene, method and step.
 
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use scenes::error::Error;
 use scenes::run::{Precision, Run, method_from_id};
 use scenes::scheme::{Rule, Scheme};
@@ -9,7 +9,7 @@ use scenes::scheme::{Rule, Scheme};
 /// What is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Command {
-    /// What the scene is: parameters, quantities, balances, as text.
+    /// What the scene is: parameters, quantities, invariants, as text.
     #[default]
     Describe,
     /// A run, observed every `stride` steps.
@@ -34,7 +34,7 @@ pub struct Question {
     /// The rule of a step.
     pub rule: Rule,
     /// What a rigid body stores.
-    pub storage: Storage,
+    pub storage: Formulation,
     /// How its attitude is advanced.
     pub update: AttitudeUpdate,
     /// The arithmetic.
@@ -63,7 +63,7 @@ impl Question {
             scene: String::new(),
             set: Vec::new(),
             rule: Rule::General(MethodId::SemiImplicitEuler),
-            storage: Storage::default(),
+            storage: Formulation::default(),
             update: AttitudeUpdate::default(),
             precision: Precision::F64,
             end_s: 1.0,
@@ -91,7 +91,7 @@ impl Question {
             }
             "method" => self.rule = Rule::General(method_from_id(value)?),
             "step" => self.rule = Rule::Rigid(named("step", RigidStep::ALL, RigidStep::id, value)?),
-            "storage" => self.storage = named("storage", &Storage::ALL, Storage::id, value)?,
+            "storage" => self.storage = named("storage", &Formulation::ALL, Formulation::id, value)?,
             "update" => self.update = named("update", &AttitudeUpdate::ALL, AttitudeUpdate::id, value)?,
             "precision" => self.precision = Precision::from_id(value)?,
             "end_s" => self.end_s = number(key, value)?,

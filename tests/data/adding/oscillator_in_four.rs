@@ -4,7 +4,7 @@ use faer::fx128;
 use integrator::{Model, Real, Single, State};
 use nalgebra::{SVector, Vector4};
 
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Invariant, Entry};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -56,10 +56,10 @@ impl Scene for OscillatorInFour {
         }
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let square = |q| seen.vector(q).iter().fold(fx128::ZERO, |sum, &x| sum + x * x);
         let (m, k) = (fx128::lit(self.mass), fx128::lit(self.stiffness));
         let twice = m * square(Quantity::Velocity) + k * square(Quantity::Position);
-        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
+        vec![Entry { invariant: Invariant::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
     }
 }

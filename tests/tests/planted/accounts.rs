@@ -3,7 +3,7 @@
 use faer::fx128;
 use integrator::Real;
 use scenes::any::AnyScene;
-use scenes::invariants::{Balance, Entry};
+use scenes::invariants::{Entry, Invariant};
 use scenes::observation::{Observation, Quantity};
 use verification::invariants::{parameter, violations};
 
@@ -26,7 +26,7 @@ pub(crate) fn faults() -> Vec<(&'static str, usize)> {
     let count = |fault: Change| {
         let sees = |scene: &dyn AnyScene| {
             let wrong = |t: fx128, seen: &Observation| {
-                let mut entries = scene.scene().account(t, seen);
+                let mut entries = scene.scene().invariants(t, seen);
                 entries.iter_mut().for_each(|entry| fault(scene, seen, entry));
                 entries
             };
@@ -39,7 +39,7 @@ pub(crate) fn faults() -> Vec<(&'static str, usize)> {
 
 /// Adds a part of m v^2 / 2 to an energy.
 fn kinetic(scene: &dyn AnyScene, seen: &Observation, entry: &mut Entry, part: f64) {
-    if entry.balance == Balance::Energy
+    if entry.invariant == Invariant::Energy
         && let [mass, ..] = parameter(scene, "mass")[..]
     {
         let square = seen.vector(Quantity::Velocity).iter().fold(fx128::ZERO, |sum, &v| sum + v * v);

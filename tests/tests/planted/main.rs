@@ -26,7 +26,7 @@ use models::{Drive, Flat, Law, Loads, Wrong};
 use reports::Verdict;
 use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion, FlatScene};
-use scenes::errors::{self, Truth};
+use scenes::errors::{self, ExactSamples};
 use scenes::observation::Observation;
 use scenes::run::{Place, Precision, Samples, Trajectory};
 
@@ -124,7 +124,7 @@ static BODIES: [&str; 3] = ["manufactured", "heavy-top", "box-tumbling"];
 /// What claims are judged by: the rows of a built-in method, and its runs in double-double.
 struct Baseline {
     scene: Box<dyn AnyScene>,
-    truth: Truth,
+    truth: ExactSamples,
     rows: Vec<Row>,
     references: BTreeMap<u64, Trajectory>,
 }
@@ -156,7 +156,7 @@ impl Baseline {
         for row in &rows {
             references.entry(row.steps).or_insert_with(|| reference(row).1);
         }
-        Baseline { truth: Truth::of(scene.as_ref(), end_s), rows, references, scene }
+        Baseline { truth: ExactSamples::of(scene.as_ref(), end_s), rows, references, scene }
     }
 
     /// The claims that are broken with the candidate's runs in the place of those in f64.

@@ -6,7 +6,7 @@ pub(super) mod bare;
 use integrator::methods::{MethodId, RigidStep, RigidVisitor, Visitor};
 use integrator::pose::{Body as BodyFrame, Exponential, Fixed, Linear, World};
 use integrator::rigid_body::{
-    AttitudeUpdate, BodyOmega, Kinematics, RigidModel, Storage, WithoutGyroscopicTerm, WorldMomentum, WorldOmega,
+    AttitudeUpdate, BodyOmega, Formulation, Kinematics, RigidModel, WithoutGyroscopicTerm, WorldMomentum, WorldOmega,
 };
 use integrator::{Method, Rotation, Single, Space, State, Tangent, Twist, Vector};
 use nalgebra::Vector3;
@@ -21,7 +21,7 @@ use crate::trajectory::readings::OmegaFrame;
 /// How the angular velocity is advanced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scheme {
-    General(MethodId, Storage),
+    General(MethodId, Formulation),
     Rigid(RigidStep),
 }
 
@@ -55,7 +55,12 @@ pub(super) fn candidates(
 ) -> Vec<Candidate> {
     let body = Body { inertia, moment, drag: Drag::None };
     let mut schemes: Vec<Scheme> = RigidStep::ALL.iter().map(|s| Scheme::Rigid(*s)).collect();
-    for storage in [Storage::BodyOmega, Storage::WorldOmega, Storage::WorldMomentum, Storage::WithoutGyroscopicTerm] {
+    for storage in [
+        Formulation::BodyOmega,
+        Formulation::WorldOmega,
+        Formulation::WorldMomentum,
+        Formulation::WithoutGyroscopicTerm,
+    ] {
         schemes.extend(MethodId::ALL.iter().map(|m| Scheme::General(*m, storage)));
     }
     let mut all = Vec::new();
@@ -107,7 +112,7 @@ fn is_substepped(scheme: Scheme) -> bool {
         scheme,
         Scheme::General(
             MethodId::SemiImplicitEuler,
-            Storage::BodyOmega | Storage::WorldOmega | Storage::WithoutGyroscopicTerm
+            Formulation::BodyOmega | Formulation::WorldOmega | Formulation::WithoutGyroscopicTerm
         ) | Scheme::Rigid(RigidStep::ImplicitGyroscopic | RigidStep::RestoredMomentum)
     )
 }
@@ -255,11 +260,11 @@ fn run<T: Single>(plan: Plan, start: &Kin, h: f64, k: u64, rows: u64) -> Vec<Kin
     macro_rules! general {
         ($method:expr, $($storage:ident, $frame:ident;)*) => {
             match (plan.scheme, plan.update) { $(
-                (Scheme::General(method, Storage::$storage), AttitudeUpdate::Exponential) => {
+                (Scheme::General(method, Formulation::$storage), AttitudeUpdate::Exponential) => {
                     let model = $storage::<Body, Exponential<$frame>>::new(body);
                     Visit::<T>::visit(method, General(runner, &model), &model)
                 }
-                (Scheme::General(method, Storage::$storage), AttitudeUpdate::Linear) => {
+                (Scheme::General(method, Formulation::$storage), AttitudeUpdate::Linear) => {
                     let model = $storage::<Body, Linear<$frame>>::new(body);
                     Visit::<T>::visit(method, General(runner, &model), &model)
                 }

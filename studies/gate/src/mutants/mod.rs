@@ -8,7 +8,7 @@ pub use show::{Death, deaths, summary};
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::pose::Fixed;
-use integrator::rigid_body::{AttitudeUpdate, BodyOmega, RigidBody, RigidModel, Storage, WorldOmega};
+use integrator::rigid_body::{AttitudeUpdate, BodyOmega, Formulation, RigidBody, RigidModel, WorldOmega};
 use integrator::{Method, Model, State};
 
 use super::candidate::{Candidate, clock, counted, on_flat, turning};
@@ -114,7 +114,7 @@ impl Mutant {
             Stepper::Turning(scheme) => Some((scheme.storage, scheme.update)),
         };
         let is = |method| stepper.method() == Some(method);
-        let (world, body) = (Storage::WorldOmega, Storage::BodyOmega);
+        let (world, body) = (Formulation::WorldOmega, Formulation::BodyOmega);
         let exponential = |stored| Some((stored, AttitudeUpdate::Exponential));
         let in_double = precision == Precision::F64;
         match self {
@@ -129,10 +129,10 @@ impl Mutant {
             Mutant::MassIgnored => mass_of(scene).is_some_and(|mass| mass != "1"),
             Mutant::ForceSign => in_double,
             Mutant::GyroscopicMissing | Mutant::GyroscopicSign => {
-                in_double && storage.is_some_and(|(stored, _)| stored != Storage::WithoutGyroscopicTerm)
+                in_double && storage.is_some_and(|(stored, _)| stored != Formulation::WithoutGyroscopicTerm)
             }
             Mutant::GyroscopicAdded => {
-                in_double && storage.is_some_and(|(stored, _)| stored == Storage::WithoutGyroscopicTerm)
+                in_double && storage.is_some_and(|(stored, _)| stored == Formulation::WithoutGyroscopicTerm)
             }
             Mutant::WrongFrame => in_double && storage.is_some(),
             Mutant::StageTime => in_double && is(MethodId::Rk4) && (storage.is_none() || storage == exponential(world)),
@@ -226,7 +226,7 @@ impl Wrong {
     fn turning<P: Place<f64>>(&self, motion: BodyMotion<'_, P>, ask: &Ask<'_>) -> Option<Trajectory> {
         let Stepper::Turning(scheme) = self.stepper else { return None };
         let clock = clock(ask)?;
-        let in_world = scheme.storage == Storage::WorldOmega;
+        let in_world = scheme.storage == Formulation::WorldOmega;
         let loads = match self.mutant {
             Mutant::ForceSign => Loads::Negated,
             Mutant::WrongFrame => Loads::WrongFrame,

@@ -1,13 +1,13 @@
 //! The bounds of a scene and a method that have none yet: from theory where it says something, else from a measurement.
 
-mod balances;
 mod errors;
+mod invariants;
 
 use std::collections::HashSet;
 
 use faer::fx128;
 use integrator::methods::MethodId;
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 
 use crate::candidate::Candidate;
 use crate::known::Known;
@@ -76,7 +76,7 @@ fn without_mutants(scene: &dyn AnyScene, stepper: Stepper) -> Vec<Row> {
     rows.extend(maker.evaluations());
     rows.extend(maker.growth());
     rows.extend(maker.turning());
-    rows.extend(maker.balances(&rows));
+    rows.extend(maker.invariants(&rows));
     rows.extend(maker.limit());
     rows.extend(maker.summed_time());
     rows
@@ -152,10 +152,10 @@ impl Maker<'_> {
     fn equation(&self) -> String {
         let Stepper::Turning(scheme) = self.stepper else { return "the method's order on a smooth problem".to_owned() };
         let equation = match scheme.storage {
-            Storage::WorldOmega => "I_w omega' = tau - omega x I_w omega, q' = (0, omega) q / 2",
-            Storage::BodyOmega => "I omega' = tau - omega x I omega, q' = q (0, omega) / 2",
-            Storage::WorldMomentum => "L' = tau, omega = I_w^-1 L, q' = (0, omega) q / 2",
-            Storage::WithoutGyroscopicTerm => "omega' = I_w^-1 tau, as where omega x I omega vanishes",
+            Formulation::WorldOmega => "I_w omega' = tau - omega x I_w omega, q' = (0, omega) q / 2",
+            Formulation::BodyOmega => "I omega' = tau - omega x I omega, q' = q (0, omega) / 2",
+            Formulation::WorldMomentum => "L' = tau, omega = I_w^-1 L, q' = (0, omega) q / 2",
+            Formulation::WithoutGyroscopicTerm => "omega' = I_w^-1 tau, as where omega x I omega vanishes",
         };
         let brackets =
             if self.stepper.method() == Some(MethodId::Rk4) { ", stages joined by the brackets of SO(3)" } else { "" };

@@ -1,6 +1,6 @@
 //! Which terms does a scene need? Models from the least to the full one, against the full exact motion.
 
-pub mod ladders;
+pub mod hierarchies;
 mod show;
 
 use faer::fx128;
@@ -14,7 +14,7 @@ use crate::claim::{Evidence, largest};
 use crate::error::Error;
 use crate::study::{Derived, Selection, Study, check_method, check_steps, distinct, short};
 use crate::sweep::in_parallel;
-use ladders::{Ladder, METHODS, Rung};
+use hierarchies::{Level, METHODS, ModelHierarchy};
 use scenes::run::Outcome;
 
 /// Halvings of the coarsest step.
@@ -23,7 +23,7 @@ const HALVINGS: u32 = 10;
 /// The error of one model with one method and step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Ladder: the scene, and what is asked of it where there are two.
+    /// Model hierarchy: the scene, and what is asked of it where there are two.
     pub scene: String,
     /// What is modelled, or left out.
     pub model: String,
@@ -67,11 +67,12 @@ impl Study for Adequacy {
         no order of convergence: it is named as such.";
 
     fn measure(selection: &Selection) -> Vec<Row> {
-        let chosen =
-            |ladder: &Ladder| selection.scenes.iter().any(|scene| without_preset(scene.id()) == base(ladder.name));
-        let ladders: Vec<Ladder> = ladders::all(&selection.scenes).into_iter().filter(chosen).collect();
+        let chosen = |ladder: &ModelHierarchy| {
+            selection.scenes.iter().any(|scene| without_preset(scene.id()) == base(ladder.name))
+        };
+        let hierarchies: Vec<ModelHierarchy> = hierarchies::all(&selection.scenes).into_iter().filter(chosen).collect();
         let halvings = if selection.quick { HALVINGS - 2 } else { HALVINGS };
-        in_parallel(&ladders, |_| 1, &selection.progress, |ladder| climb(ladder, selection, halvings)).concat()
+        in_parallel(&hierarchies, |_| 1, &selection.progress, |ladder| climb(ladder, selection, halvings)).concat()
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         show::tables(rows)
@@ -103,7 +104,7 @@ fn without_preset(id: &str) -> &str {
     id.split('/').next().unwrap_or(id)
 }
 
-fn climb(ladder: &Ladder, selection: &Selection, halvings: u32) -> Vec<Row> {
+fn climb(ladder: &ModelHierarchy, selection: &Selection, halvings: u32) -> Vec<Row> {
     let scene = ladder.scene.as_ref();
     let end_s = selection.end_s(scene);
     let exact = scene.exact(fx128::lit(end_s));
@@ -135,14 +136,14 @@ fn climb(ladder: &Ladder, selection: &Selection, halvings: u32) -> Vec<Row> {
     rows
 }
 
-fn operations(rung: &Rung, method: MethodId) -> u64 {
+fn operations(rung: &Level, method: MethodId) -> u64 {
     (rung.operations)(method).unwrap_or(0)
 }
 
 /// What the sweep of one model with one method shows.
 #[derive(Clone, Debug)]
-pub struct Seen {
-    /// Ladder.
+pub struct ObservedOrder {
+    /// Model hierarchy.
     pub scene: String,
     /// Model.
     pub model: String,
@@ -174,19 +175,19 @@ pub struct Seen {
 const FLOOR: f64 = 1e-11;
 
 /// What every sweep among the rows shows, in their order.
-pub fn rungs(rows: &[Row]) -> Vec<Seen> {
+pub fn rungs(rows: &[Row]) -> Vec<ObservedOrder> {
     let key = |row: &Row| (row.scene.clone(), row.model.clone(), row.method.clone());
     distinct(rows.iter().map(key))
         .iter()
         .map(|k| {
             let full = rows.iter().rfind(|row| (&row.scene, &row.method, row.model.as_str()) == (&k.0, &k.2, "full"));
             let seen = seen(&rows.iter().filter(|row| key(row) == *k).collect::<Vec<_>>());
-            Seen { full: full.and_then(|row| row.error), ..seen }
+            ObservedOrder { full: full.and_then(|row| row.error), ..seen }
         })
         .collect()
 }
 
-fn seen(sweep: &[&Row]) -> Seen {
+fn seen(sweep: &[&Row]) -> ObservedOrder {
     let first = sweep[0];
     let finest = sweep.last().and_then(|row| row.error);
     let above: Vec<(f64, f64)> =
@@ -196,7 +197,7 @@ fn seen(sweep: &[&Row]) -> Seen {
         _ => None,
     };
     let near = |row: &&&Row| finest.zip(row.error).is_some_and(|(f, e)| (e / f - 1.0).abs() <= 0.1);
-    Seen {
+    ObservedOrder {
         scene: first.scene.clone(),
         model: first.model.clone(),
         consistent: first.consistent,
@@ -218,7 +219,7 @@ fn seen(sweep: &[&Row]) -> Seen {
 /// A consistent model: its error falls with the order of the method, or is rounding. An inconsistent one: the last halving does
 /// not change the error. That is seen with RK4, whose own error is far below that of the model; where a model is nearly right, as
 /// a small angle is for a small swing, the error of a method of order 1 still covers it.
-fn claim(seen: &Seen) -> Option<Claim> {
+fn claim(seen: &ObservedOrder) -> Option<Claim> {
     if !seen.consistent && seen.method != MethodId::Rk4.id() {
         return None;
     }
@@ -252,7 +253,7 @@ fn claim(seen: &Seen) -> Option<Claim> {
 }
 
 /// Whether a wrong model is too little wrong to be seen beside rounding, or beside the error that the method makes on the full model.
-fn hides(seen: &Seen) -> bool {
+fn hides(seen: &ObservedOrder) -> bool {
     let beside =
         |e: f64| e > FLOOR && (e <= HIDDEN || seen.full.is_some_and(|full| full < e && e <= full / LARGEST_ORDER));
     !seen.consistent && seen.finest.is_some_and(beside)

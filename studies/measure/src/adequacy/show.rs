@@ -3,7 +3,7 @@
 use reports::{Axis, Figure, Layer, Series, Table};
 use serde::Serialize;
 
-use super::{Row, Seen, rungs};
+use super::{ObservedOrder, Row, rungs};
 use crate::error::Error;
 use crate::study::{Derived, distinct, short};
 use scenes::run::Outcome;
@@ -110,8 +110,8 @@ fn stable<'a>(rows: &'a [Row], scene: &str, level: f64) -> Option<&'a Row> {
 }
 
 fn models(rows: &[Row]) -> Result<Derived, Error> {
-    let all: Vec<Seen> = rungs(rows);
-    let full = |seen: &Seen| {
+    let all: Vec<ObservedOrder> = rungs(rows);
+    let full = |seen: &ObservedOrder| {
         let same = all.iter().find(|s| s.scene == seen.scene && s.method == seen.method && s.model == "full");
         same.map(|s| s.operations_a_step)
     };

@@ -20,7 +20,7 @@ use crate::study::{Derived, Selection, Study, check_method, check_scene, check_s
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::errors;
-use scenes::errors::{Errors, Truth};
+use scenes::errors::{Errors, ExactSamples};
 use scenes::observation::Quantity;
 use scenes::run::{Outcome, Precision, Trajectory, method_from_id};
 use scenes::theory::ExpectedOrder;
@@ -153,16 +153,16 @@ fn measure(selection: &Selection) -> Vec<Row> {
 /// What is known of a scene before it is run.
 struct Known {
     end_s: f64,
-    truth: Truth,
+    truth: ExactSamples,
     leading: Vec<Leading>,
 }
 
 impl Known {
     fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
         // Where the motion is not smooth the error has another leading term.
-        let smooth = scene.scene().breaks_s(end_s).is_empty();
+        let smooth = scene.scene().nonsmooth_times_s(end_s).is_empty();
         let leading = if smooth { scene.leading(end_s) } else { Vec::new() };
-        Known { end_s, truth: Truth::of(scene, end_s), leading }
+        Known { end_s, truth: ExactSamples::of(scene, end_s), leading }
     }
 }
 

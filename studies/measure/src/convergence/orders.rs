@@ -209,7 +209,7 @@ fn order_claim(group: &[&OrderRow]) -> Option<Claim> {
 fn is_promised(method: &str, scene: &str, said: Evidence) -> bool {
     let is_smooth = || {
         let scene = scenes::by_id(scene);
-        scene.is_ok_and(|any| any.scene().breaks_s(any.scene().info().horizon_s).is_empty())
+        scene.is_ok_and(|any| any.scene().nonsmooth_times_s(any.scene().info().horizon_s).is_empty())
     };
     method_from_id(method).is_ok_and(|method| method.facts().worked_out) || (said != Evidence::Undecided && is_smooth())
 }

@@ -11,7 +11,7 @@ use crate::study::{Derived, short};
 use scenes::run::{Outcome, Precision};
 use scenes::theory::Law;
 
-/// The law of growth of one balance in one run.
+/// The law of growth of one invariant in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawRow {
     /// Scene or preset.
@@ -28,7 +28,7 @@ pub struct LawRow {
     pub unit: String,
     /// Largest |error| of the run.
     pub largest_error: Option<f64>,
-    /// The same as a part of the balance at the start (of 1 for an angle and for the quaternion).
+    /// The same as a part of the invariant at the start (of 1 for an angle and for the quaternion).
     pub relative_error: Option<f64>,
     /// The law observed.
     pub law: Law,
@@ -58,7 +58,7 @@ pub struct LawRow {
     pub evidence: String,
 }
 
-/// The law of every balance of every run among the rows, in their order.
+/// The law of every invariant of every run among the rows, in their order.
 pub fn laws(rows: &[Row]) -> Vec<LawRow> {
     runs(rows).map(law_of).collect()
 }
@@ -79,7 +79,7 @@ fn law_of(run: &[Row]) -> LawRow {
     let complete: Vec<(f64, f64, f64)> =
         run.iter().filter_map(|row| Some((row.t_s, row.error_min?, row.error_max?))).collect();
     let envelope = growth::running_maximum(complete.iter().map(|&(t, low, high)| (t, low.abs().max(high.abs()))));
-    // Rounding of the balance itself: a few units in its last place, gathered over a few thousand steps as a random walk.
+    // Rounding of the invariant itself: a few units in its last place, gathered over a few thousand steps as a random walk.
     let noise = 256.0 * first.precision.epsilon() * first.scale.max(first.terms);
     let seen = growth::classify(&envelope, noise);
     let largest = envelope.last().map(|sample| sample.error);
@@ -139,7 +139,7 @@ pub(super) fn table(rows: &[Row]) -> Result<Derived, Error> {
     })
 }
 
-/// One claim for each run and balance of which theory says something, in f64.
+/// One claim for each run and invariant of which theory says something, in f64.
 pub(super) fn claims(rows: &[Row]) -> Vec<Claim> {
     runs(rows).filter(|run| run[0].precision == Precision::F64).filter_map(judged).collect()
 }
@@ -203,7 +203,7 @@ fn judged(run: &[Row]) -> Option<Claim> {
     )
 }
 
-/// Whether a run cannot tell: the balance has no size to compare with; or two laws fit alike, the run is shorter than what the law
+/// Whether a run cannot tell: the invariant has no size to compare with; or two laws fit alike, the run is shorter than what the law
 /// needs to be seen, or nothing grew out of the rounding.
 fn is_open(row: &LawRow, theory: Law) -> bool {
     let no_size = row.relative_error.is_none_or(|r| !r.is_finite()) && row.failed_at_s.is_none();
@@ -216,5 +216,5 @@ fn is_open(row: &LawRow, theory: Law) -> bool {
 
 /// The rate is the slope of ln(E / E0), whose oscillation within a period is (w h) / 2 at most over hundreds of periods.
 const EXPONENTIAL_TOLERANCE: f64 = 1e-3;
-/// A balance is summed with a rounding error a step; its random walk over 10^5 steps stays below this part of it.
+/// An invariant is summed with a rounding error a step; its random walk over 10^5 steps stays below this part of it.
 const ROUNDING_SLACK: f64 = 1e-12;

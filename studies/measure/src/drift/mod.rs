@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::study::{Derived, Selection, Study, check_method, check_scene, check_steps};
 use crate::sweep::{Progress, in_parallel};
 use scenes::any::AnyScene;
-use scenes::invariants::{Balance, Entry};
+use scenes::invariants::{Entry, Invariant};
 use scenes::observation::{Observation, Value, largest, norm};
 use scenes::run::{Outcome, Precision, Run, method_from_id};
 use scenes::theory::ExpectedGrowth;
@@ -87,7 +87,7 @@ impl Drift {
     }
 }
 
-/// The error of one balance in one stretch of a run.
+/// The error of one invariant in one stretch of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Scene or preset.
@@ -102,9 +102,9 @@ pub struct Row {
     pub drift: Drift,
     /// Unit of the errors.
     pub unit: String,
-    /// Size of the balance at the start, in the same unit; 1 for an angle and for the quaternion.
+    /// Size of the invariant at the start, in the same unit; 1 for an angle and for the quaternion.
     pub scale: f64,
-    /// Size of the terms that the balance is a sum of, at most, in the same unit: what it is rounded by is a part of them.
+    /// Size of the terms that the invariant is a sum of, at most, in the same unit: what it is rounded by is a part of them.
     pub terms: f64,
     /// End of the stretch, s.
     pub t_s: f64,
@@ -188,14 +188,14 @@ impl Study for DriftStudy {
     }
 }
 
-/// A long run of one scene, and the true account at each of its observations.
+/// A long run of one scene, and the exact invariants at each of its observations.
 struct Track<'a> {
     scene: &'a dyn AnyScene,
     h_s: f64,
     steps: u64,
     /// Steps from one observation to the next.
     stride: u64,
-    /// One account, if all of it is conserved; else one for each observation.
+    /// One set of invariants, if all are conserved; else one for each observation.
     truth: Vec<Vec<Entry>>,
     kinds: Vec<(Drift, f64)>,
 }
@@ -211,16 +211,16 @@ impl<'a> Track<'a> {
         });
         let stride = (steps / STRETCHES / observations).max(1);
         let start = scene.exact(fx128::ZERO);
-        let first = scene.scene().account(fx128::ZERO, &start);
+        let first = scene.scene().invariants(fx128::ZERO, &start);
         let at = |step: u64| {
             let t = fx128::lit(step as f64 * h_s);
-            scene.scene().account(t, &scene.exact(t))
+            scene.scene().invariants(t, &scene.exact(t))
         };
         let conserved = first.iter().all(|entry| entry.conserved);
         let norm = start.rotation().map(|_| Drift::QuaternionNorm);
         let kinds = drifts(&first, &first).into_iter().map(|(drift, _)| drift).chain(norm);
-        let seen: Vec<Vec<(Drift, f64)>> = (0..=LOOKS)
-            .map(|k| terms(scene, fx128::lit(steps as f64 * h_s) * fx128::lit(k as f64 / LOOKS as f64)))
+        let seen: Vec<Vec<(Drift, f64)>> = (0..=SAMPLES)
+            .map(|k| terms(scene, fx128::lit(steps as f64 * h_s) * fx128::lit(k as f64 / SAMPLES as f64)))
             .collect();
         let largest = |drift| seen.iter().flatten().filter(|(d, _)| *d == drift).map(|(_, x)| *x).fold(0.0, f64::max);
         let kinds = kinds.map(|drift| (drift, largest(drift))).collect();
@@ -229,9 +229,9 @@ impl<'a> Track<'a> {
     }
 
     fn errors(&self, step: u64, seen: &Observation) -> Vec<(Drift, f64)> {
-        let account = self.scene.scene().account(fx128::lit(step as f64 * self.h_s), seen);
+        let invariants = self.scene.scene().invariants(fx128::lit(step as f64 * self.h_s), seen);
         let truth = if self.truth.len() == 1 { &self.truth[0] } else { &self.truth[(step / self.stride) as usize] };
-        let mut errors = drifts(&account, truth);
+        let mut errors = drifts(&invariants, truth);
         if seen.rotation().is_some() {
             errors.push((Drift::QuaternionNorm, seen.norm_error));
         }
@@ -281,25 +281,25 @@ impl<'a> Track<'a> {
     }
 
     fn theory(&self, method: MethodId, drift: Drift) -> Option<ExpectedGrowth> {
-        let balance = match drift {
-            Drift::Energy => Balance::Energy,
-            Drift::MomentumNorm => Balance::Momentum,
-            Drift::AngularMomentumNorm => Balance::AngularMomentum,
+        let invariant = match drift {
+            Drift::Energy => Invariant::Energy,
+            Drift::MomentumNorm => Invariant::Momentum,
+            Drift::AngularMomentumNorm => Invariant::AngularMomentum,
             _ => return None,
         };
-        self.scene.scene().expected_growth(method, balance, self.h_s)
+        self.scene.scene().expected_growth(method, invariant, self.h_s)
     }
 }
 
-/// Times at which the terms of the balances are looked at.
-const LOOKS: u64 = 16;
+/// Times at which the terms of the invariants are looked at.
+const SAMPLES: u64 = 16;
 
-/// Size of the terms of each balance on the exact motion: how much it changes for the relative change of each component of what is
+/// Size of the terms of each invariant on the exact motion: how much it changes for the relative change of each component of what is
 /// seen.
 fn terms(scene: &dyn AnyScene, t: fx128) -> Vec<(Drift, f64)> {
     const CHANGE: f64 = 1.0 / 1_048_576.0;
     let seen = scene.exact(t);
-    let at = |seen: &Observation| scene.scene().account(t, seen);
+    let at = |seen: &Observation| scene.scene().invariants(t, seen);
     let own = at(&seen);
     let mut sizes: Vec<(Drift, f64)> = drifts(&own, &own);
     let mut add = |moved: &Observation| {
@@ -332,18 +332,18 @@ fn terms(scene: &dyn AnyScene, t: fx128) -> Vec<(Drift, f64)> {
     sizes
 }
 
-/// Errors of an account against the true one, scalars as they are, vectors by norm and direction.
+/// Errors of the invariants against the exact ones, scalars as they are, vectors by norm and direction.
 pub fn drifts(seen: &[Entry], truth: &[Entry]) -> Vec<(Drift, f64)> {
     let mut errors = Vec::new();
     for (a, b) in seen.iter().zip(truth) {
         let norms = || (norm(a.value.iter().copied()) - norm(b.value.iter().copied())).to_f64();
-        match a.balance {
-            Balance::Energy => errors.push((Drift::Energy, (a.value[0] - b.value[0]).to_f64())),
-            Balance::Momentum => {
+        match a.invariant {
+            Invariant::Energy => errors.push((Drift::Energy, (a.value[0] - b.value[0]).to_f64())),
+            Invariant::Momentum => {
                 errors.push((Drift::MomentumNorm, norms()));
                 errors.push((Drift::MomentumDirection, angle(&a.value, &b.value)));
             }
-            Balance::AngularMomentum => {
+            Invariant::AngularMomentum => {
                 errors.push((Drift::AngularMomentumNorm, norms()));
                 // A plane motion has one component, and no direction to lose.
                 if a.value.len() > 1 {
@@ -364,14 +364,15 @@ fn angle(a: &[fx128], b: &[fx128]) -> f64 {
     2.0 * difference.atan2(sum).to_f64()
 }
 
-/// Size of a balance at the start; 1 for an angle and for the quaternion.
+/// Size of an invariant at the start; 1 for an angle and for the quaternion.
 pub fn scale(reference: &[Entry], drift: Drift) -> f64 {
-    let balance = match drift {
-        Drift::Energy => Balance::Energy,
-        Drift::MomentumNorm => Balance::Momentum,
-        Drift::AngularMomentumNorm => Balance::AngularMomentum,
+    let invariant = match drift {
+        Drift::Energy => Invariant::Energy,
+        Drift::MomentumNorm => Invariant::Momentum,
+        Drift::AngularMomentumNorm => Invariant::AngularMomentum,
         Drift::MomentumDirection | Drift::AngularMomentumDirection | Drift::QuaternionNorm => return 1.0,
     };
-    let value = reference.iter().find(|entry| entry.balance == balance).map(|entry| norm(entry.value.iter().copied()));
+    let value =
+        reference.iter().find(|entry| entry.invariant == invariant).map(|entry| norm(entry.value.iter().copied()));
     value.map_or(1.0, Single::to_f64)
 }

@@ -43,7 +43,7 @@ fn figure(scene: &str, drift: Drift, rows: &[&Row]) -> Figure {
             })
             .collect();
         let failed: Vec<f64> = run.first().and_then(|row| row.failed_at_s).into_iter().collect();
-        // Less than the last bit of the balance itself: no error that f64 could show, and decades of empty chart.
+        // Less than the last bit of the invariant itself: no error that f64 could show, and decades of empty chart.
         if failed.is_empty() && largest < 0.5 * f64::EPSILON * run[0].scale {
             exact.push(method.title());
             continue;

@@ -3,7 +3,7 @@
 //! The law is one for all; each lane has its own start. A lane has the bits of the run of its member alone (in the same
 //! arithmetic), so that nothing is known of an ensemble that is not known of its members.
 
-use integrator::lanes::{Laned, Pack};
+use integrator::lanes::{FromLanes, Pack};
 use integrator::methods::{MethodId, Visitor};
 use integrator::pose::Pose;
 use integrator::{Method, Model, Real, Rotation, Space, State, Vector, drive};
@@ -13,7 +13,7 @@ use wide::f64x4;
 /// The arithmetic of an ensemble: plain `f64`, eight members at a time.
 pub type Eight = Pack<f64x4, 2>;
 /// Its members.
-pub const WIDTH: usize = <Eight as Laned>::LANES;
+pub const WIDTH: usize = <Eight as FromLanes>::LANES;
 
 /// A configuration as a list of numbers.
 pub trait Coordinates: Space {
@@ -55,7 +55,7 @@ impl<T: Real, U: integrator::pose::Update, P: Vector<T>> Coordinates for Pose<T,
 }
 
 /// The states of up to `L::LANES` members, the last of them in every lane that is left.
-fn packed<L: Laned, Q, P>(members: &[State<Q>]) -> State<P>
+fn packed<L: FromLanes, Q, P>(members: &[State<Q>]) -> State<P>
 where
     Q: Coordinates<Scalar = f64>,
     P: Coordinates<Scalar = L>,
@@ -68,7 +68,7 @@ where
 }
 
 /// The state of one member.
-fn unpacked<L: Laned, Q, P>(state: &State<P>, lane: usize) -> State<Q>
+fn unpacked<L: FromLanes, Q, P>(state: &State<P>, lane: usize) -> State<Q>
 where
     Q: Coordinates<Scalar = f64>,
     P: Coordinates<Scalar = L>,
@@ -89,7 +89,7 @@ pub fn runs_in_lanes(method: MethodId) -> bool {
 ///
 /// A failure stops the pack; then every member is run again with all lanes to itself, which gives it the same bits.
 /// The outer `None`: the method does not run in lanes.
-pub fn run_pack<L: Laned, M: Model<L>, Q: Coordinates<Scalar = f64>>(
+pub fn run_pack<L: FromLanes, M: Model<L>, Q: Coordinates<Scalar = f64>>(
     model: &M,
     members: &[State<Q>],
     method: MethodId,
@@ -108,14 +108,14 @@ where
 }
 
 /// One run of a pack to the end.
-struct Members<'a, L: Laned, M: Model<L>> {
+struct Members<'a, L: FromLanes, M: Model<L>> {
     model: &'a M,
     start: State<M::Config>,
     end_s: f64,
     steps: u64,
 }
 
-impl<L: Laned, M: Model<L>> Visitor<L, M> for Members<'_, L, M> {
+impl<L: FromLanes, M: Model<L>> Visitor<L, M> for Members<'_, L, M> {
     type Output = Option<State<M::Config>>;
 
     fn visit<A: Method<L, M>>(self, method: &A) -> Self::Output {

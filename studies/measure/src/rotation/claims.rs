@@ -4,8 +4,8 @@ use integrator::methods::Conserved;
 use reports::Claim;
 
 use super::laws::nutation_factor;
-use super::long::{DRIFT_END_S, Fate, POINTS};
-use super::orders::{ORDER_TOLERANCE, Seen, orders};
+use super::long::{DRIFT_END_S, DiscOutcome, POINTS};
+use super::orders::{ORDER_TOLERANCE, ObservedOrder, orders};
 use super::row::{Experiment, Row};
 use crate::claim::{self, Evidence, largest};
 use crate::growth;
@@ -34,19 +34,19 @@ fn claim(id: &str, texts: [String; 4], evidence: impl IntoIterator<Item = Eviden
 
 /// One claim a scheme and order of theory, over all scenes that it has this order on.
 fn order_claims(rows: &[Row]) -> Vec<Claim> {
-    let attitudes: Vec<Seen> = orders(rows).into_iter().filter(|seen| seen.quantity == "attitude").collect();
+    let attitudes: Vec<ObservedOrder> = orders(rows).into_iter().filter(|seen| seen.quantity == "attitude").collect();
     let mut claims = Vec::new();
     for id in distinct(attitudes.iter().map(|seen| seen.scheme.clone())) {
-        let of_scheme: Vec<&Seen> = attitudes.iter().filter(|s| s.scheme == id).collect();
+        let of_scheme: Vec<&ObservedOrder> = attitudes.iter().filter(|s| s.scheme == id).collect();
         for expected in distinct(of_scheme.iter().map(|s| s.theory_order)) {
-            let seen: Vec<&Seen> = of_scheme.iter().copied().filter(|s| s.theory_order == expected).collect();
+            let seen: Vec<&ObservedOrder> = of_scheme.iter().copied().filter(|s| s.theory_order == expected).collect();
             claims.push(order_claim(&id, expected, &seen));
         }
     }
     claims
 }
 
-fn order_claim(id: &str, expected: Option<f64>, seen: &[&Seen]) -> Claim {
+fn order_claim(id: &str, expected: Option<f64>, seen: &[&ObservedOrder]) -> Claim {
     let name = expected.map_or("exact".to_owned(), |p| format!("order-{p}"));
     let measured = seen.iter().map(|s| match (expected, s.order) {
         (Some(_), Some(order)) => format!("{} {}", s.subject, short(Some(order))),
@@ -126,11 +126,11 @@ fn disc_claims(rows: &[Row]) -> Vec<Claim> {
     by_scheme(rows, Experiment::Disc)
         .into_iter()
         .filter_map(|(scheme, rows)| {
-            let (factor, fate) = (nutation_factor(scheme, 2.0, 1.0)?, Fate::of(&rows));
+            let (factor, fate) = (nutation_factor(scheme, 2.0, 1.0)?, DiscOutcome::of(&rows));
             let growth = factor.ln();
             let as_told = |fate| match fate {
-                Fate::Damps => growth < -1e-9,
-                Fate::Survives => growth.abs() <= 1e-9,
+                DiscOutcome::Damps => growth < -1e-9,
+                DiscOutcome::Survives => growth.abs() <= 1e-9,
                 _ => growth > 1e-9,
             };
             Some(claim(
@@ -141,7 +141,7 @@ fn disc_claims(rows: &[Row]) -> Vec<Claim> {
                         scheme.id()
                     ),
                     format!("factor {factor:.6} a step"),
-                    fate.map_or_else(|| "unknown".to_owned(), Fate::words),
+                    fate.map_or_else(|| "unknown".to_owned(), DiscOutcome::words),
                     "above 1 grows, at 1 survives, below 1 is damped".to_owned(),
                 ],
                 [Evidence::is(fate.is_some_and(as_told))],
@@ -216,7 +216,7 @@ fn destination_claims(rows: &[Row]) -> Vec<Claim> {
 /// What a scheme keeps to rounding on a free body.
 pub fn conserved(scheme: Scheme) -> &'static [Conserved] {
     use integrator::methods::MethodId::ImplicitMidpoint;
-    use integrator::rigid_body::Storage::{BodyOmega, WithoutGyroscopicTerm, WorldMomentum};
+    use integrator::rigid_body::Formulation::{BodyOmega, WithoutGyroscopicTerm, WorldMomentum};
     match (scheme.rule, scheme.storage) {
         (Rule::Rigid(step), _) => step.conserves(),
         // L' = 0, which every method sums exactly.

@@ -5,7 +5,7 @@
 
 use faer::fx128;
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 use integrator::rotation::cross;
 use integrator::{Real, Single};
 use nalgebra::Matrix2;
@@ -43,13 +43,13 @@ pub fn step_law(scheme: Scheme, at: &Free) -> Option<StepLaw> {
     let (power, square) = (dot(v, jv).to_f64(), dot(v, v).to_f64());
     let law = |energy, momentum| Some(StepLaw { energy, momentum });
     match (scheme.rule, scheme.storage) {
-        (Rule::General(SemiImplicitEuler), Storage::WorldOmega | Storage::BodyOmega)
-        | (Rule::General(ExplicitEuler), Storage::BodyOmega) => law((power, Exact), (square, Exact)),
-        (Rule::General(ExplicitEuler), Storage::WorldOmega) => {
+        (Rule::General(SemiImplicitEuler), Formulation::WorldOmega | Formulation::BodyOmega)
+        | (Rule::General(ExplicitEuler), Formulation::BodyOmega) => law((power, Exact), (square, Exact)),
+        (Rule::General(ExplicitEuler), Formulation::WorldOmega) => {
             let turned = dot(l, at.inertia.component_mul(&cross(w, jv))).to_f64();
             law((-power, Leading), (square - 2.0 * turned, Leading))
         }
-        (Rule::General(ExplicitEuler | SemiImplicitEuler), Storage::WorldMomentum) => {
+        (Rule::General(ExplicitEuler | SemiImplicitEuler), Formulation::WorldMomentum) => {
             law((power, Leading), (0.0, Exact))
         }
         (Rule::Rigid(RigidStep::ImplicitGyroscopic), _) => law((-power, Leading), (-square, Leading)),
@@ -58,11 +58,11 @@ pub fn step_law(scheme: Scheme, at: &Free) -> Option<StepLaw> {
             law((power - restored, Leading), (0.0, Exact))
         }
         (Rule::Rigid(RigidStep::MomentumMidpoint | RigidStep::FreeSplitting), _)
-        | (Rule::General(MethodId::VelocityVerlet), Storage::WorldMomentum) => law((0.0, Leading), (0.0, Exact)),
-        (Rule::General(ImplicitMidpoint), Storage::BodyOmega) => law((0.0, Exact), (0.0, Exact)),
+        | (Rule::General(MethodId::VelocityVerlet), Formulation::WorldMomentum) => law((0.0, Leading), (0.0, Exact)),
+        (Rule::General(ImplicitMidpoint), Formulation::BodyOmega) => law((0.0, Exact), (0.0, Exact)),
         // The world frame turns with the step: the midpoint rule is no longer that of a quadratic vector field.
-        (Rule::General(ImplicitMidpoint), Storage::WorldMomentum) => law((0.0, Leading), (0.0, Exact)),
-        (Rule::General(_), Storage::WithoutGyroscopicTerm) => law((0.0, Exact), (0.0, Exact)),
+        (Rule::General(ImplicitMidpoint), Formulation::WorldMomentum) => law((0.0, Leading), (0.0, Exact)),
+        (Rule::General(_), Formulation::WithoutGyroscopicTerm) => law((0.0, Exact), (0.0, Exact)),
         _ => None,
     }
 }
@@ -141,19 +141,18 @@ pub fn nutation_factor(scheme: Scheme, rho: f64, theta: f64) -> Option<f64> {
         integrator::rigid_body::AttitudeUpdate::Linear => 2.0 * (theta / 2.0).atan(),
     };
     match (scheme.rule, scheme.storage) {
-        (Rule::General(SemiImplicitEuler), Storage::WorldOmega | Storage::BodyOmega)
-        | (Rule::General(ExplicitEuler), Storage::BodyOmega)
+        (Rule::General(SemiImplicitEuler), Formulation::WorldOmega | Formulation::BodyOmega)
+        | (Rule::General(ExplicitEuler), Formulation::BodyOmega)
         | (Rule::Rigid(RigidStep::RestoredMomentum), _) => Some(x.hypot(1.0)),
-        (Rule::General(ExplicitEuler), Storage::WorldOmega) => Some((1.0 + 2.0 * x * turned.sin() + x * x).sqrt()),
-        (Rule::General(ExplicitEuler | SemiImplicitEuler), Storage::WorldMomentum)
+        (Rule::General(ExplicitEuler), Formulation::WorldOmega) => Some((1.0 + 2.0 * x * turned.sin() + x * x).sqrt()),
+        (Rule::General(ExplicitEuler | SemiImplicitEuler), Formulation::WorldMomentum)
             if scheme.update == integrator::rigid_body::AttitudeUpdate::Exponential =>
         {
             Some((1.0 + 4.0 * rho * (rho - 1.0) * (theta / 2.0).sin().powi(2)).sqrt())
         }
         (Rule::Rigid(RigidStep::ImplicitGyroscopic), _) => Some(1.0 / x.hypot(1.0)),
-        (Rule::General(ImplicitMidpoint), Storage::BodyOmega) | (Rule::General(_), Storage::WithoutGyroscopicTerm) => {
-            Some(1.0)
-        }
+        (Rule::General(ImplicitMidpoint), Formulation::BodyOmega)
+        | (Rule::General(_), Formulation::WithoutGyroscopicTerm) => Some(1.0),
         _ => None,
     }
 }

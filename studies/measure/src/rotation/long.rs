@@ -101,7 +101,7 @@ fn disc_run(body: &TorqueFreeSpin, scheme: Scheme) -> Vec<Row> {
 
 /// What became of the disc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
+pub enum DiscOutcome {
     /// The energy grew tenfold.
     BlowsUp(u64),
     /// The spin changed its sign in the body.
@@ -114,33 +114,33 @@ pub enum Fate {
     Survives,
 }
 
-impl Fate {
+impl DiscOutcome {
     /// From the four rows of one scheme.
-    pub fn of(rows: &[&Row]) -> Option<Fate> {
+    pub fn of(rows: &[&Row]) -> Option<DiscOutcome> {
         let get = |name: &str| rows.iter().find(|row| row.quantity.contains(name));
         if let Some(step) = get("tenfold")?.at_step {
-            return Some(Fate::BlowsUp(step));
+            return Some(DiscOutcome::BlowsUp(step));
         }
         if let Some(step) = get("flip")?.at_step {
-            return Some(Fate::Flips(step));
+            return Some(DiscOutcome::Flips(step));
         }
         let start = 0.15 / 30.0_f64;
         let (widest, last) = (get("largest angle")?.value?, get("last angle")?.value?);
         Some(match (widest, last) {
-            (_, last) if last < 0.1 * start => Fate::Damps,
-            (widest, _) if widest > 20.0 * start => Fate::Saturates,
-            _ => Fate::Survives,
+            (_, last) if last < 0.1 * start => DiscOutcome::Damps,
+            (widest, _) if widest > 20.0 * start => DiscOutcome::Saturates,
+            _ => DiscOutcome::Survives,
         })
     }
 
     /// In words.
     pub fn words(self) -> String {
         match self {
-            Fate::BlowsUp(step) => format!("blows up: tenfold energy at step {step}"),
-            Fate::Flips(step) => format!("flips at step {step}"),
-            Fate::Damps => "damps the nutation".to_owned(),
-            Fate::Saturates => "nutation grows, then saturates".to_owned(),
-            Fate::Survives => "survives".to_owned(),
+            DiscOutcome::BlowsUp(step) => format!("blows up: tenfold energy at step {step}"),
+            DiscOutcome::Flips(step) => format!("flips at step {step}"),
+            DiscOutcome::Damps => "damps the nutation".to_owned(),
+            DiscOutcome::Saturates => "nutation grows, then saturates".to_owned(),
+            DiscOutcome::Survives => "survives".to_owned(),
         }
     }
 }

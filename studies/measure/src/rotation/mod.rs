@@ -11,7 +11,7 @@ mod show;
 mod tables;
 
 use integrator::methods::MethodId;
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use reports::{Claim, Figure};
 
 pub use row::{Experiment, Row};
@@ -107,7 +107,7 @@ fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
 /// The two forms of semi-implicit Euler, which are one motion, and of explicit Euler, which are not.
 fn same_motions(scene: &dyn AnyScene, end_s: f64) -> Vec<Row> {
     let pair = |method| {
-        [Storage::WorldOmega, Storage::BodyOmega]
+        [Formulation::WorldOmega, Formulation::BodyOmega]
             .map(|storage| Scheme::general(method, storage, AttitudeUpdate::Exponential))
     };
     [MethodId::SemiImplicitEuler, MethodId::ExplicitEuler]

@@ -2,7 +2,7 @@
 
 use faer::fx128;
 use integrator::methods::MethodId;
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
@@ -53,8 +53,8 @@ impl Known {
     fn constant(&self, scheme: Scheme, quantity: Quantity) -> Option<&Leading> {
         let Rule::General(method) = scheme.rule else { return None };
         let is_known = match scheme.storage {
-            Storage::WorldOmega => method.order() == 1 || scheme.update == AttitudeUpdate::Exponential,
-            Storage::BodyOmega => method == MethodId::SemiImplicitEuler,
+            Formulation::WorldOmega => method.order() == 1 || scheme.update == AttitudeUpdate::Exponential,
+            Formulation::BodyOmega => method == MethodId::SemiImplicitEuler,
             _ => false,
         };
         let of = |one: &&Leading| (one.method, one.quantity) == (method, quantity);
@@ -113,7 +113,7 @@ fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Ve
 
 /// What a sweep shows.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct ObservedOrder {
     /// Scene.
     pub subject: String,
     /// Scheme.
@@ -142,14 +142,14 @@ pub struct Seen {
 const FLOOR: f64 = 65_536.0 * <f64 as Single>::EPSILON;
 
 /// What every sweep among the rows shows.
-pub fn orders(rows: &[Row]) -> Vec<Seen> {
+pub fn orders(rows: &[Row]) -> Vec<ObservedOrder> {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.experiment == Experiment::Error).collect();
     let key = |row: &Row| (row.subject.clone(), row.scheme.clone(), row.quantity.clone());
     let keys = distinct(rows.iter().map(|row| key(row)));
     keys.iter().map(|k| seen(&rows.iter().copied().filter(|row| key(row) == *k).collect::<Vec<_>>())).collect()
 }
 
-fn seen(sweep: &[&Row]) -> Seen {
+fn seen(sweep: &[&Row]) -> ObservedOrder {
     let first = sweep[0];
     let points: Vec<(f64, f64)> = sweep.iter().filter_map(|row| Some((row.h_s, row.value?))).collect();
     let above: Vec<(f64, f64)> =
@@ -161,7 +161,7 @@ fn seen(sweep: &[&Row]) -> Seen {
         _ => None,
     };
     let steps = (first.t_s / first.h_s).round();
-    Seen {
+    ObservedOrder {
         subject: first.subject.clone(),
         scheme: first.scheme.clone(),
         quantity: first.quantity.clone(),

@@ -2,7 +2,7 @@
 
 use integrator::methods::{ExplicitEuler, ImplicitGyroscopic, MethodId, RigidStep, SemiImplicitEuler};
 use integrator::pose::{Body, Exponential, Linear, World};
-use integrator::rigid_body::{AttitudeUpdate, BodyOmega, RigidModel, Storage, WorldOmega};
+use integrator::rigid_body::{AttitudeUpdate, BodyOmega, Formulation, RigidModel, WorldOmega};
 use integrator::rotation::dot;
 use integrator::{Method, drive};
 use nalgebra::Vector3;
@@ -51,9 +51,9 @@ impl Comparison {
         if method.contains("Newton") {
             Scheme::rigid(RigidStep::ImplicitGyroscopic, AttitudeUpdate::Exponential)
         } else if method.contains("world omega") {
-            Scheme::general(MethodId::SemiImplicitEuler, Storage::WorldOmega, AttitudeUpdate::Linear)
+            Scheme::general(MethodId::SemiImplicitEuler, Formulation::WorldOmega, AttitudeUpdate::Linear)
         } else {
-            Scheme::general(MethodId::ExplicitEuler, Storage::BodyOmega, AttitudeUpdate::Exponential)
+            Scheme::general(MethodId::ExplicitEuler, Formulation::BodyOmega, AttitudeUpdate::Exponential)
         }
     }
 
@@ -133,18 +133,18 @@ fn maxima<'a, M: RigidModel<f64, Body = &'a BoxTumbling>, A: Method<f64, M>>(
     let steps = (10.0 / h).ceil() as u64;
     let (x0, v0, g) = (Vector3::from(body.x0), Vector3::from(body.v0), Vector3::from(body.gravity));
     let inertia = Vector3::from(body.inertia);
-    let account = |s: &_| {
+    let invariants = |s: &_| {
         let at = model.kinematics(s);
         let momentum = inertia.component_mul(&at.omega_body);
         let translation = body.mass * (0.5 * dot(at.velocity, at.velocity) - dot(g, at.position));
         (translation + 0.5 * dot(at.omega_body, momentum), at.attitude.rotate(momentum))
     };
-    let (energy, momentum) = account(&start);
+    let (energy, momentum) = invariants(&start);
     let mut largest = [0.0_f64; 3];
     // A state that is not finite leaves the maxima behind; they are then compared with the printed ones and fail.
     let _ = drive::integrate(method, model, start, h, steps, |i, s| {
         let t = i as f64 * h;
-        let (e, l) = account(s);
+        let (e, l) = invariants(s);
         let exact = x0 + v0 * t + g * (0.5 * t * t);
         let errors = [
             (l - momentum).norm() / momentum.norm(),

@@ -4,8 +4,8 @@ use reports::Table;
 use serde::Serialize;
 
 use super::claims::{conserved, law};
-use super::long::Fate;
-use super::orders::{Seen, orders};
+use super::long::DiscOutcome;
+use super::orders::{ObservedOrder, orders};
 use super::row::{Experiment, Row};
 use crate::error::Error;
 use crate::study::{Derived, short};
@@ -21,7 +21,7 @@ fn of_scheme<'a>(rows: &'a [Row], experiment: Experiment, scheme: &str) -> Vec<&
     rows.iter().filter(|row| row.experiment == experiment && row.scheme == scheme).collect()
 }
 
-fn schemes(rows: &[Row], seen: &[Seen]) -> Result<Derived, Error> {
+fn schemes(rows: &[Row], seen: &[ObservedOrder]) -> Result<Derived, Error> {
     let headers = [
         "scheme",
         "order",
@@ -98,7 +98,7 @@ struct SchemeLine {
     long_run_momentum_ratio: Option<f64>,
 }
 
-fn scheme_line(rows: &[Row], seen: &[Seen], scheme: Scheme) -> Option<SchemeLine> {
+fn scheme_line(rows: &[Row], seen: &[ObservedOrder], scheme: Scheme) -> Option<SchemeLine> {
     let id = scheme.id();
     let sweep = seen.iter().find(|s| s.scheme == id && s.quantity == "attitude" && s.subject == "torque-free-spin")?;
     let step = of_scheme(rows, Experiment::StepLaw, &id);
@@ -126,7 +126,8 @@ fn scheme_line(rows: &[Row], seen: &[Seen], scheme: Scheme) -> Option<SchemeLine
         momentum_direction_law,
         momentum_direction_rad,
         nutation_factor: nutation.and_then(|row| row.value),
-        disc_fate: Fate::of(&of_scheme(rows, Experiment::Disc, &id)).map_or_else(String::new, Fate::words),
+        disc_fate: DiscOutcome::of(&of_scheme(rows, Experiment::Disc, &id))
+            .map_or_else(String::new, DiscOutcome::words),
         long_run_end,
         long_run_momentum_ratio,
         scheme: id,
@@ -176,7 +177,7 @@ struct OrderLine<'a> {
     conserved_without_torque: String,
 }
 
-fn by_scene(seen: &[Seen]) -> Result<Derived, Error> {
+fn by_scene(seen: &[ObservedOrder]) -> Result<Derived, Error> {
     let headers = [
         "scene",
         "scheme",
@@ -190,7 +191,7 @@ fn by_scene(seen: &[Seen]) -> Result<Derived, Error> {
     ];
     let mut table =
         Table::new(&headers, &["order", "error at the finest step", "error at the reference step", "reference h (s)"]);
-    let line = |s: &'_ Seen| {
+    let line = |s: &'_ ObservedOrder| {
         let kept = Scheme::from_id(&s.scheme).map(conserved).unwrap_or_default();
         kept.iter().map(|c| format!("{c:?}")).collect::<Vec<_>>().join(" ")
     };

@@ -6,7 +6,7 @@ use integrator::Single;
 use super::amplification;
 use super::bisect::{Found, WIDTH, bracket};
 use super::failure::Failure;
-use super::judge::{self, Trend};
+use super::trend::{self, Trend};
 use super::{Part, Row};
 use scenes::observation::norm;
 use scenes::run::Precision;
@@ -65,7 +65,7 @@ impl Trial {
             return Trial { patience: 1 << IMPLICIT_LENGTHS[0], width: WIDTH, sees: true };
         }
         let StabilityLimit::Below(limit) = theory else {
-            return Trial { patience: judge::PATIENCE, width: WIDTH, sees: true };
+            return Trial { patience: trend::PATIENCE, width: WIDTH, sees: true };
         };
         let growth = |width: f64| {
             let matrix = amplification::matrix(stepping, limit * (1.0 + UNSEEN * width));
@@ -77,7 +77,7 @@ impl Trial {
             width *= 2.0;
         }
         let (needed, most) = (needed(width), 1 << LENGTHS[2]);
-        let patience = needed.min(most).next_power_of_two().max(judge::PATIENCE);
+        let patience = needed.min(most).next_power_of_two().max(trend::PATIENCE);
         Trial { patience, width, sees: needed <= most }
     }
 
@@ -95,7 +95,7 @@ impl Trial {
         let lengths = [short, middle, last];
         let lengths: &[u32] = if stepping.method.is_implicit() { &IMPLICIT_LENGTHS } else { &lengths };
         for &log2_steps in lengths {
-            match judge::trend_after(&difference(stepping, h_s, &GENERIC, log2_steps), self.patience) {
+            match trend::trend_after(&difference(stepping, h_s, &GENERIC, log2_steps), self.patience) {
                 Some(trend) => return trend != Trend::Exponential,
                 None => continue,
             }
@@ -153,10 +153,10 @@ const GENERIC: [f64; 32] = {
     displacement
 };
 
-/// Size of the difference of two runs, |dv|, at the steps of [`judge::looks`]: whatever grows exponentially shows in the
+/// Size of the difference of two runs, |dv|, at the steps of [`trend::samples`]: whatever grows exponentially shows in the
 /// velocity, and a position that drifts under no force does not.
 fn difference(stepping: &Stepping<'_>, h_s: f64, displacement: &[f64], log2_steps: u32) -> Vec<(u64, f64)> {
-    difference_at(stepping, h_s, displacement, 1 << log2_steps, &judge::looks(log2_steps), false)
+    difference_at(stepping, h_s, displacement, 1 << log2_steps, &trend::samples(log2_steps), false)
 }
 
 fn difference_at(
@@ -164,14 +164,14 @@ fn difference_at(
     h_s: f64,
     displacement: &[f64],
     steps: u64,
-    looks: &[u64],
+    samples: &[u64],
     with_positions: bool,
 ) -> Vec<(u64, f64)> {
-    let walk = |displacement: &[f64]| stepping.walk(h_s, steps, displacement, looks);
+    let walk = |displacement: &[f64]| stepping.walk(h_s, steps, displacement, samples);
     let (Some(own), Some(moved)) = (walk(&[]), walk(displacement)) else { return Vec::new() };
     let scale = stepping.scene.scene().info().time_scale_s;
     let rounding = stepping.precision.epsilon();
-    let mut sizes: Vec<(u64, f64)> = Vec::with_capacity(looks.len());
+    let mut sizes: Vec<(u64, f64)> = Vec::with_capacity(samples.len());
     for ((step, a), (_, b)) in own.seen.iter().zip(&moved.seen) {
         let (a, b) = (coordinates(a), coordinates(b));
         let difference = size(&a, &b, scale, with_positions);
@@ -198,7 +198,7 @@ fn size(a: &[fx128], b: &[fx128], scale: f64, with_positions: bool) -> f64 {
 /// What the difference of two runs does at a step that is known to fail, or not to.
 fn beyond_the_limit(stepping: &Stepping<'_>, h_s: f64) -> Failure {
     let log2_steps = if stepping.method.is_implicit() { 8 } else { 16 };
-    match judge::trend(&difference(stepping, h_s, &GENERIC, log2_steps)) {
+    match trend::trend(&difference(stepping, h_s, &GENERIC, log2_steps)) {
         Some(Trend::Exponential) => Failure::of_growth(&difference_early(stepping, h_s)),
         _ => Failure::None,
     }

@@ -7,7 +7,6 @@ pub mod claims;
 pub use scenes::displaced;
 pub mod failure;
 mod figures;
-pub mod judge;
 pub mod limits;
 pub mod maps;
 pub mod models;
@@ -15,6 +14,7 @@ mod nonlinear;
 mod pictures;
 pub mod spin;
 mod tables;
+pub mod trend;
 
 pub use nonlinear::UNCONDITIONAL;
 

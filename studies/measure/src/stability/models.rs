@@ -4,7 +4,7 @@ use integrator::methods::{MethodId, Visitor};
 use integrator::{Method, Model, State};
 use nalgebra::{Complex, Vector1, Vector2};
 
-use super::judge::{self, Trend};
+use super::trend::{self, Trend};
 use scenes::DampedOscillator;
 use scenes::scene::Scene;
 use scenes::theory::StabilityLimit;
@@ -84,7 +84,7 @@ impl Scheme {
                 Scheme::Listed(method) => method.visit(run),
                 Scheme::ImplicitDamping => run.visit(&ImplicitDamping),
             };
-            if let Some(trend) = judge::trend(&sizes) {
+            if let Some(trend) = trend::trend(&sizes) {
                 return trend != Trend::Exponential;
             }
         }
@@ -133,7 +133,7 @@ impl Visitor<f64, Damped> for Sizes {
         // Moving outwards: no eigenvector of a damped oscillator does, so that every mode has its part.
         let mut s = State { q: Vector1::new(0.75), v: Vector1::new(0.8125) };
         let (mut sizes, mut done) = (Vec::new(), 0);
-        for look in judge::looks(self.log2_steps) {
+        for look in trend::samples(self.log2_steps) {
             while done < look {
                 s = method.step(&self.model, 0.0, self.h, s);
                 done += 1;

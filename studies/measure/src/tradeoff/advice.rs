@@ -1,14 +1,14 @@
 //! The answer to a user's question: which method, in which arithmetic, with which step? Nothing is advised that was not run.
 
+use super::advice_text;
 use super::asked::{Asked, Entry, Steady, timed};
 pub use super::asked::{Pick, Question};
 use super::budget;
 use super::candidate::{Candidate, candidates};
+use super::exact::ExactSamples;
 use super::limit::limit;
 use super::quantity::Of;
 use super::search::{Need, Search, Tried, attempt, finer, most_steps, search};
-use super::speak;
-use super::truth::Truth;
 use crate::error::Error;
 use crate::study::Selection;
 use crate::sweep::in_parallel;
@@ -26,7 +26,7 @@ pub struct Advice {
 }
 
 /// Samples of a run, if frames do not set another number: where one of them misses the error, the other steps are not looked at.
-const LOOKS: u64 = 64;
+const SAMPLES: u64 = 64;
 
 /// Answers for every chosen scene with every chosen method, in f32 and f64 unless one arithmetic is chosen.
 ///
@@ -43,7 +43,7 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
     for scene in &selection.scenes {
         let (end_s, frames) = question.span(scene.as_ref())?;
         let error = question.error.unwrap_or(f64::INFINITY);
-        let truth = Truth::new(scene.as_ref(), end_s, frames.map_or(LOOKS, looks_at_frames));
+        let truth = ExactSamples::new(scene.as_ref(), end_s, frames.map_or(SAMPLES, samples_at_frames));
         let truth = truth.at_every_step(question.of, error);
         check_truth(&truth, scene.id(), question.of)?;
         let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: frames.unwrap_or(2) };
@@ -53,7 +53,7 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
             Some(_) => by_error(&asked, selection, ways),
             None => budget::by_budget(&asked, &ways),
         };
-        let pick = speak::answer(&asked, entries, &mut advice.text);
+        let pick = advice_text::answer(&asked, entries, &mut advice.text);
         advice.possible &= pick.is_some();
         advice.picks.push(pick);
     }
@@ -61,7 +61,7 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
 }
 
 /// Refuses a quantity that the scene does not have, and an exact motion that is not finite.
-fn check_truth(truth: &Truth<'_>, scene: &str, of: Of) -> Result<(), Error> {
+fn check_truth(truth: &ExactSamples<'_>, scene: &str, of: Of) -> Result<(), Error> {
     let [has, is_finite] = truth.is_known();
     if !has {
         let message = format!("{scene} has no {}; choose another quantity", of.id());
@@ -76,8 +76,8 @@ fn check_truth(truth: &Truth<'_>, scene: &str, of: Of) -> Result<(), Error> {
 }
 
 /// Looks that fall on frames: a divisor of their number.
-fn looks_at_frames(frames: u64) -> u64 {
-    (LOOKS / 2..=2 * LOOKS).rev().find(|looks| frames.is_multiple_of(*looks)).unwrap_or(LOOKS)
+fn samples_at_frames(frames: u64) -> u64 {
+    (SAMPLES / 2..=2 * SAMPLES).rev().find(|samples| frames.is_multiple_of(*samples)).unwrap_or(SAMPLES)
 }
 
 /// Every way that can be timed, if there is one: a budget cannot do without.

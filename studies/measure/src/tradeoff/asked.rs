@@ -1,7 +1,7 @@
 //! A question about cost and error, and what was found for it.
 
 use super::candidate::{Candidate, Span};
-use super::clock::{Care, Cost, Task, costs};
+use super::clock::{Cost, Task, TimingEffort, costs};
 use super::limit::Limit;
 use super::quantity::Of;
 use super::search::{Need, Search, Tried, watched};
@@ -137,7 +137,7 @@ pub(super) fn timed(asked: &Asked<'_>, found: Vec<((Candidate, Precision), Stead
     let picks: Vec<&mut Pick> = entries.iter_mut().filter_map(|entry| entry.found.as_mut().ok()).collect();
     let of_pick = |pick: &&mut Pick| task(asked, pick.candidate, pick.precision, pick.tried.steps, pick.h_s);
     let tasks: Vec<Task> = picks.iter().map(of_pick).collect();
-    for (pick, cost) in picks.into_iter().zip(costs(asked.need.scene, &tasks, Care::ADVICE)) {
+    for (pick, cost) in picks.into_iter().zip(costs(asked.need.scene, &tasks, TimingEffort::ADVICE)) {
         pick.cost = cost;
     }
     entries

@@ -2,7 +2,7 @@
 
 use super::asked::{Asked, Entry, MOST_FRAMES, Pick, Steady, TIMED_STEPS, task, timed};
 use super::candidate::Candidate;
-use super::clock::{Care, Cost, Task, costs};
+use super::clock::{Cost, Task, TimingEffort, costs};
 use super::limit::limit;
 use super::search::{Need, Search, Tried, attempt};
 use scenes::run::Precision;
@@ -12,7 +12,7 @@ use scenes::run::Precision;
 pub(super) fn by_budget(asked: &Asked<'_>, ways: &[(Candidate, Precision)]) -> Vec<Entry> {
     let h_s = asked.need.scene.scene().info().horizon_s / TIMED_STEPS as f64;
     let tasks: Vec<Task> = ways.iter().map(|&(c, p)| task(asked, c, p, TIMED_STEPS, h_s)).collect();
-    let first = costs(asked.need.scene, &tasks, Care::FULL);
+    let first = costs(asked.need.scene, &tasks, TimingEffort::FULL);
     let mut entries = timed(
         asked,
         ways.iter()

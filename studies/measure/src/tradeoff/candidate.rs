@@ -1,7 +1,7 @@
 //! What can be bought: a rule of a step, on a rigid body with what is stored.
 
 use integrator::methods::{MethodId, RigidStep};
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use reports::Marker;
 
 use crate::study::color_of;
@@ -9,7 +9,7 @@ use scenes::any::AnyScene;
 use scenes::observation::Observation;
 use scenes::run::{Precision, Run, Shown, Trajectory};
 use scenes::scheme::{Rule, Scheme};
-use scenes::timed::{Lap, Laps};
+use scenes::timed::{Repetitions, Timing};
 
 /// One way to move a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,8 @@ pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId]) -> Vec<Candidate> 
 fn for_bodies(methods: &[MethodId]) -> Vec<Candidate> {
     use AttitudeUpdate::Exponential;
     let general = |storage| methods.iter().map(move |&method| Scheme::general(method, storage, Exponential));
-    let mut schemes: Vec<Scheme> = [Storage::WorldOmega, Storage::BodyOmega].into_iter().flat_map(general).collect();
+    let mut schemes: Vec<Scheme> =
+        [Formulation::WorldOmega, Formulation::BodyOmega].into_iter().flat_map(general).collect();
     if methods.len() == MethodId::ALL.len() {
         schemes.extend(RigidStep::ALL.iter().map(|&step| Scheme::rigid(step, Exponential)));
     }
@@ -46,7 +47,7 @@ fn for_bodies(methods: &[MethodId]) -> Vec<Candidate> {
 
 impl Candidate {
     fn flat(method: MethodId) -> Self {
-        let scheme = Scheme::general(method, Storage::WorldOmega, AttitudeUpdate::Exponential);
+        let scheme = Scheme::general(method, Formulation::WorldOmega, AttitudeUpdate::Exponential);
         Candidate { scheme, is_rigid: false }
     }
 
@@ -123,7 +124,7 @@ impl Candidate {
 
     /// Whether [`Self::time`] has code for it, or, in double-double, the observed run stands in.
     pub fn is_timed(self, precision: Precision) -> bool {
-        let of_body = !self.is_rigid || self.scheme.storage != Storage::WorldOmega;
+        let of_body = !self.is_rigid || self.scheme.storage != Formulation::WorldOmega;
         let is_core = self.method().is_none_or(MethodId::is_core);
         match precision {
             Precision::DoubleDouble => true,
@@ -133,7 +134,7 @@ impl Candidate {
     }
 
     /// One timed run; `None` for what is not compiled to be timed.
-    pub fn time(self, scene: &dyn AnyScene, precision: Precision, span: Span, laps: Laps) -> Option<Lap> {
+    pub fn time(self, scene: &dyn AnyScene, precision: Precision, span: Span, laps: Repetitions) -> Option<Timing> {
         scene.time(&Run::new(self.scheme, precision, span.end_s, span.steps), laps)
     }
 }

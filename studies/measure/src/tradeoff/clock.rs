@@ -6,24 +6,24 @@ use std::time::Instant;
 use super::candidate::{Candidate, Span};
 use scenes::any::AnyScene;
 use scenes::run::Precision;
-use scenes::timed::Laps;
+use scenes::timed::Repetitions;
 
 /// How carefully times are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Care {
+pub struct TimingEffort {
     /// Rounds.
     pub rounds: usize,
     /// Length of one sample, ns.
     pub sample_ns: u64,
 }
 
-impl Care {
+impl TimingEffort {
     /// For a study of everything.
-    pub const FULL: Care = Care { rounds: 9, sample_ns: 40_000 };
+    pub const FULL: TimingEffort = TimingEffort { rounds: 9, sample_ns: 40_000 };
     /// For a glance.
-    pub const QUICK: Care = Care { rounds: 3, sample_ns: 10_000 };
+    pub const QUICK: TimingEffort = TimingEffort { rounds: 3, sample_ns: 10_000 };
     /// For the few that an answer rests on.
-    pub const ADVICE: Care = Care { rounds: 21, sample_ns: 200_000 };
+    pub const ADVICE: TimingEffort = TimingEffort { rounds: 21, sample_ns: 200_000 };
 }
 
 /// What is to be timed.
@@ -67,14 +67,14 @@ pub fn cycle_ns() -> f64 {
 }
 
 /// Times every task on one scene; `None` for a run that fails. Nothing else may run meanwhile.
-pub fn costs(scene: &dyn AnyScene, tasks: &[Task], care: Care) -> Vec<Option<Cost>> {
+pub fn costs(scene: &dyn AnyScene, tasks: &[Task], care: TimingEffort) -> Vec<Option<Cost>> {
     // The first run warms the caches and says how many make a sample.
-    let laps: Vec<Laps> = tasks
+    let laps: Vec<Repetitions> = tasks
         .iter()
         .map(|task| {
-            let one = sample(scene, task, Laps(1));
+            let one = sample(scene, task, Repetitions(1));
             // A run that cannot be timed is not tried again.
-            Laps(if one.is_nan() { 0 } else { (care.sample_ns as f64 / one.max(1.0)).clamp(1.0, 1e4) as u32 })
+            Repetitions(if one.is_nan() { 0 } else { (care.sample_ns as f64 / one.max(1.0)).clamp(1.0, 1e4) as u32 })
         })
         .collect();
     let mut times = vec![Vec::with_capacity(care.rounds); tasks.len()];
@@ -90,7 +90,7 @@ pub fn costs(scene: &dyn AnyScene, tasks: &[Task], care: Care) -> Vec<Option<Cos
 }
 
 /// Time of all laps, ns; NaN for a run that fails.
-fn sample(scene: &dyn AnyScene, task: &Task, laps: Laps) -> f64 {
+fn sample(scene: &dyn AnyScene, task: &Task, laps: Repetitions) -> f64 {
     let Task { candidate, precision, span } = *task;
     match candidate.time(scene, precision, span, laps) {
         Some(lap) if lap.checksum.is_finite() => lap.ns,
@@ -101,7 +101,7 @@ fn sample(scene: &dyn AnyScene, task: &Task, laps: Laps) -> f64 {
 }
 
 /// Double-double is timed as it is run for errors: its arithmetic outweighs the counting by far.
-fn observed(scene: &dyn AnyScene, task: &Task, laps: Laps) -> f64 {
+fn observed(scene: &dyn AnyScene, task: &Task, laps: Repetitions) -> f64 {
     let clock = Instant::now();
     for _ in 0..laps.0 {
         let seen = task.candidate.run(scene, task.precision, task.span, task.span.steps);

@@ -1,13 +1,13 @@
 //! Work-precision diagrams and U-curves.
 
 use integrator::methods::MethodId;
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 use reports::{Axis, Figure, Layer, Line, Series};
 
 use super::candidate::Candidate;
-use super::iso::sweeps;
-use super::ucurve::{INDEPENDENT, Minimum, SHOWN, minima};
-use super::{Charge, Part, Row};
+use super::cost_at_error::sweeps;
+use super::rounding_optimum::{INDEPENDENT, Minimum, SHOWN, minima};
+use super::{CostMeasure, Part, Row};
 use crate::names::scene_title;
 use crate::study::color_of;
 use scenes::run::Precision;
@@ -31,26 +31,26 @@ pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
     let mut figures = Vec::new();
     for of_scene in runs.chunk_by(|a, b| a.scene == b.scene) {
         let sweeps = sweeps(of_scene);
-        figures.extend(Charge::ALL.into_iter().filter_map(|charge| work(&sweeps, charge)));
+        figures.extend(CostMeasure::ALL.into_iter().filter_map(|charge| work(&sweeps, charge)));
         let of_scene: Vec<&Minimum> = minima.iter().filter(|m| m.scene == of_scene[0].scene).collect();
         figures.extend(u_curve(&sweeps, &of_scene));
     }
     figures
 }
 
-fn work(sweeps: &[Vec<&Row>], charge: Charge) -> Option<Figure> {
+fn work(sweeps: &[Vec<&Row>], charge: CostMeasure) -> Option<Figure> {
     let layers: Vec<Layer> = sweeps.iter().filter_map(|sweep| series(sweep, charge)).map(Layer::Series).collect();
     let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
     let scene = first.scene.as_str();
     let (id, title, y, caption) = match charge {
-        Charge::Evaluations => (
+        CostMeasure::Evaluations => (
             "evaluations",
             "error against evaluations",
             "evaluations of the force up to the horizon",
             "Lower is cheaper, further left is more accurate: the lowest line at an error is the best buy. Counted exactly, in \
              f64. A method without any error on this scene has no line.",
         ),
-        Charge::Time => (
+        CostMeasure::Time => (
             "time",
             "error against time",
             "time for a simulated second (ns)",
@@ -74,7 +74,7 @@ fn work(sweeps: &[Vec<&Row>], charge: Charge) -> Option<Figure> {
 }
 
 /// One line of a chart; `None` for what it does not show.
-fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
+fn series(sweep: &[&Row], charge: CostMeasure) -> Option<Series> {
     let candidate = Candidate::from_id(&sweep[0].method).filter(|c| is_shown(*c, charge))?;
     if sweep[0].precision != Precision::F64 {
         return None;
@@ -91,12 +91,12 @@ fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
     }
     let whisker = |row: &Row| Some([row.least_ns_per_step? / row.h_s, row.upper_ns_per_step? / row.h_s]);
     let whiskers = match charge {
-        Charge::Evaluations => Vec::new(),
-        Charge::Time => shown.iter().filter_map(|(row, _)| whisker(row)).collect(),
+        CostMeasure::Evaluations => Vec::new(),
+        CostMeasure::Time => shown.iter().filter_map(|(row, _)| whisker(row)).collect(),
     };
     let line = match (candidate.scheme.rule, candidate.scheme.storage) {
         (Rule::Rigid(_), _) => Line::Dotted,
-        (Rule::General(_), Storage::WorldOmega) if candidate.is_rigid => Line::Dashed,
+        (Rule::General(_), Formulation::WorldOmega) if candidate.is_rigid => Line::Dashed,
         _ => Line::Solid,
     };
     let series = Series::new(candidate.label(), candidate.color(), shown.iter().map(|(_, point)| *point).collect());
@@ -105,11 +105,11 @@ fn series(sweep: &[&Row], charge: Charge) -> Option<Series> {
 
 /// Of a rigid body every method with the angular velocity of the body; with that of the world, of which only the time differs with
 /// semi-implicit Euler, two for comparison.
-fn is_shown(candidate: Candidate, charge: Charge) -> bool {
-    let of_world = candidate.is_rigid && candidate.scheme.storage == Storage::WorldOmega;
+fn is_shown(candidate: Candidate, charge: CostMeasure) -> bool {
+    let of_world = candidate.is_rigid && candidate.scheme.storage == Formulation::WorldOmega;
     match candidate.method() {
         Some(method) if of_world => {
-            charge == Charge::Time && matches!(method, MethodId::SemiImplicitEuler | MethodId::Rk4)
+            charge == CostMeasure::Time && matches!(method, MethodId::SemiImplicitEuler | MethodId::Rk4)
         }
         _ => true,
     }
@@ -121,7 +121,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         let first = sweep[0];
         let Some(candidate) = Candidate::from_id(&first.method) else { continue };
         let Some(method) = candidate.method().filter(|m| SHOWN.contains(m)) else { continue };
-        if candidate.is_rigid && candidate.scheme.storage != Storage::BodyOmega {
+        if candidate.is_rigid && candidate.scheme.storage != Formulation::BodyOmega {
             continue;
         }
         let Some(minimum) = minima.iter().find(|m| m.method == first.method && m.precision == first.precision) else {

@@ -20,7 +20,7 @@ pub struct Limit {
 }
 
 /// Looks at a run that is measured, at most: a failure stays to be seen.
-const LOOKS: u64 = 1 << 14;
+const SAMPLES: u64 = 1 << 14;
 
 /// By the amplification matrix on a linear scene, by running at least so long everywhere else.
 pub fn limit(scene: &dyn AnyScene, candidate: Candidate, precision: Precision, end_s: f64) -> Limit {
@@ -32,7 +32,7 @@ pub fn limit(scene: &dyn AnyScene, candidate: Candidate, precision: Precision, e
         return Limit { h_s, measured: None };
     }
     let found = measure_nonlinear(scene, end_s, |end_s, steps| {
-        candidate.run(scene, precision, Span { end_s, steps }, (steps / LOOKS).max(1))
+        candidate.run(scene, precision, Span { end_s, steps }, (steps / SAMPLES).max(1))
     });
     let h_s = match found {
         Found::NoStep { .. } => 0.0,

@@ -4,28 +4,28 @@
 //! and no claim rests on them.
 
 pub mod advice;
+mod advice_text;
 mod asked;
 mod budget;
 pub mod candidate;
 mod cells;
 mod claims;
 pub mod clock;
+mod comparison_tables;
+pub mod cost_at_error;
 mod cost_tables;
-mod duel_tables;
+pub mod exact;
 mod figures;
 pub mod front;
-pub mod iso;
 pub mod limit;
 pub mod path;
 mod peers;
 pub mod quantity;
+pub mod rounding_optimum;
 pub mod runs;
 pub mod search;
-mod speak;
+pub mod stagnation;
 mod tables;
-pub mod truth;
-pub mod ucurve;
-pub mod vanish;
 pub mod verdict;
 
 use reports::{Claim, Figure};
@@ -122,7 +122,7 @@ impl Study for Tradeoff {
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let mut rows = runs::errors(selection);
-        rows.extend(vanish::rows(selection));
+        rows.extend(stagnation::rows(selection));
         runs::time(selection, &mut rows);
         rows
     }
@@ -181,22 +181,22 @@ impl Row {
 /// What a run is charged in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Charge {
+pub enum CostMeasure {
     /// Evaluations of the force law up to the horizon.
     Evaluations,
     /// Time for a simulated second, ns: the least over the rounds.
     Time,
 }
 
-impl Charge {
+impl CostMeasure {
     /// Both.
-    pub const ALL: [Charge; 2] = [Charge::Evaluations, Charge::Time];
+    pub const ALL: [CostMeasure; 2] = [CostMeasure::Evaluations, CostMeasure::Time];
 
     /// What a run costs. Evaluations do not know what arithmetic costs: only f64 is charged in them.
     pub fn of(self, row: &Row) -> Option<f64> {
         match self {
-            Charge::Evaluations => (row.precision == Precision::F64).then_some(row.evaluations as f64),
-            Charge::Time => row.least_ns_per_step.map(|ns| ns / row.h_s),
+            CostMeasure::Evaluations => (row.precision == Precision::F64).then_some(row.evaluations as f64),
+            CostMeasure::Time => row.least_ns_per_step.map(|ns| ns / row.h_s),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use faer::fx128;
 use scenes::any::AnyScene;
-use scenes::invariants::Balance;
+use scenes::invariants::Invariant;
 use scenes::observation::{Observation, Quantity, Value, distance, largest};
 
 /// A quantity whose error is asked for.
@@ -16,7 +16,7 @@ pub enum Of {
     /// One quantity.
     Quantity(Quantity),
     /// The energy or a momentum. A vector counts with its direction.
-    Balance(Balance),
+    Invariant(Invariant),
 }
 
 impl Of {
@@ -26,9 +26,9 @@ impl Of {
         Of::Quantity(Quantity::Velocity),
         Of::Quantity(Quantity::Attitude),
         Of::Quantity(Quantity::AngularVelocity),
-        Of::Balance(Balance::Energy),
-        Of::Balance(Balance::Momentum),
-        Of::Balance(Balance::AngularMomentum),
+        Of::Invariant(Invariant::Energy),
+        Of::Invariant(Invariant::Momentum),
+        Of::Invariant(Invariant::AngularMomentum),
     ];
 
     /// The name on the command line.
@@ -36,7 +36,7 @@ impl Of {
         match self {
             Of::Configuration => "configuration",
             Of::Quantity(quantity) => quantity.id(),
-            Of::Balance(balance) => balance.id(),
+            Of::Invariant(invariant) => invariant.id(),
         }
     }
 
@@ -48,8 +48,9 @@ impl Of {
         match self {
             Of::Configuration => chosen(&|q| matches!(q, Quantity::Position | Quantity::Attitude)),
             Of::Quantity(quantity) => chosen(&|q| q == quantity),
-            Of::Balance(balance) => {
-                let entries = scene.scene().account(t, seen).into_iter().filter(|entry| entry.balance == balance);
+            Of::Invariant(invariant) => {
+                let entries =
+                    scene.scene().invariants(t, seen).into_iter().filter(|entry| entry.invariant == invariant);
                 entries.map(|entry| Cow::Owned(Value::Vector(entry.value))).collect()
             }
         }
@@ -59,7 +60,7 @@ impl Of {
     pub fn unit(self, start: &Observation) -> &'static str {
         match self {
             Of::Quantity(quantity) => quantity.unit(),
-            Of::Balance(balance) => balance.unit(),
+            Of::Invariant(invariant) => invariant.unit(),
             Of::Configuration => match [Quantity::Position, Quantity::Attitude].map(|q| start.get(q).is_some()) {
                 [true, true] => "m and rad",
                 [false, true] => "rad",

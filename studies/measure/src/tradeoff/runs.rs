@@ -1,10 +1,10 @@
 //! The runs: errors on all cores, then times on one with nothing beside.
 
-use integrator::rigid_body::Storage;
+use integrator::rigid_body::Formulation;
 
 use super::candidate::{Candidate, Span, candidates};
-use super::clock::{Care, Cost, Task, costs};
-use super::truth::{LOOKS, Truth, apart};
+use super::clock::{Cost, Task, TimingEffort, costs};
+use super::exact::{ExactSamples, SAMPLES, apart};
 use super::{Part, Row};
 use crate::study::Selection;
 use crate::sweep::{Progress, in_parallel};
@@ -33,7 +33,7 @@ fn halvings(candidate: Candidate, precision: Precision, quick: bool) -> Option<u
 }
 
 struct Job<'a> {
-    truth: &'a Truth<'a>,
+    truth: &'a ExactSamples<'a>,
     scene: &'a dyn AnyScene,
     candidate: Candidate,
     precisions: Vec<Precision>,
@@ -44,7 +44,8 @@ struct Job<'a> {
 pub fn errors(selection: &Selection) -> Vec<Row> {
     let scenes: Vec<&dyn AnyScene> = selection.scenes.iter().map(AsRef::as_ref).collect();
     let horizon = |scene: &&dyn AnyScene| selection.end_s(*scene);
-    let truths = in_parallel(&scenes, |_| 1, &Progress::silent(), |scene| Truth::new(*scene, horizon(scene), LOOKS));
+    let truths =
+        in_parallel(&scenes, |_| 1, &Progress::silent(), |scene| ExactSamples::new(*scene, horizon(scene), SAMPLES));
     let mut jobs = Vec::new();
     for (scene, truth) in selection.scenes.iter().zip(&truths) {
         for candidate in candidates(scene.as_ref(), &selection.methods) {
@@ -61,7 +62,7 @@ pub fn errors(selection: &Selection) -> Vec<Row> {
 fn jobs_of<'a>(
     selection: &Selection,
     scene: &'a dyn AnyScene,
-    truth: &'a Truth<'a>,
+    truth: &'a ExactSamples<'a>,
     candidate: Candidate,
 ) -> Vec<Job<'a>> {
     let (end_s, coarsest) = (selection.end_s(scene), selection.coarsest_steps(scene));
@@ -129,7 +130,7 @@ const LENGTHS: [u64; 5] = [1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
 
 /// Fills in the times of the runs, and adds the rows of [`Part::Length`].
 pub fn time(selection: &Selection, rows: &mut Vec<Row>) {
-    let care = if selection.quick { Care::QUICK } else { Care::FULL };
+    let care = if selection.quick { TimingEffort::QUICK } else { TimingEffort::FULL };
     let mut lengths = Vec::new();
     for scene in &selection.scenes {
         let of_scene = |row: &Row| row.part == Part::Run && row.scene == scene.id();
@@ -196,9 +197,9 @@ fn fill(rows: &mut [Row], scene: &str, timed: &[(Task, Cost)]) {
 /// Scenes of which the cost is followed over the length of a run.
 const LONG: [&str; 3] = ["oscillator", "pendulum", "torque-free-spin"];
 
-fn length_rows(scene: &dyn AnyScene, selection: &Selection, care: Care) -> Vec<Row> {
+fn length_rows(scene: &dyn AnyScene, selection: &Selection, care: TimingEffort) -> Vec<Row> {
     let chosen = |candidate: &Candidate| {
-        !candidate.scheme.is_implicit() && (!candidate.is_rigid || candidate.scheme.storage == Storage::BodyOmega)
+        !candidate.scheme.is_implicit() && (!candidate.is_rigid || candidate.scheme.storage == Formulation::BodyOmega)
     };
     let end_s = selection.end_s(scene);
     let tasks: Vec<Task> = candidates(scene, &selection.methods)

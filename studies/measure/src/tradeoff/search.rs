@@ -5,7 +5,7 @@
 //! doublings, and [`FINER`] between. A run meets a level if its error at every step does; that one sample misses it is enough.
 
 use super::candidate::{Candidate, Span};
-use super::truth::{Truth, Watch};
+use super::exact::{ExactSamples, Watch};
 use crate::study::distinct;
 use scenes::any::AnyScene;
 use scenes::run::{Outcome, Precision};
@@ -16,7 +16,7 @@ pub struct Need<'a> {
     /// The scene.
     pub scene: &'a dyn AnyScene,
     /// Its exact motion.
-    pub truth: &'a Truth<'a>,
+    pub truth: &'a ExactSamples<'a>,
     /// The largest error, in m or rad.
     pub error: f64,
     /// End of the run, s.

@@ -3,10 +3,10 @@
 use reports::Table;
 use serde::Serialize;
 
-use super::cells::{charge_name, label, runs};
+use super::cells::{cost_measure_name, label, runs};
+use super::cost_at_error::{CostAtError, LEVELS, prices};
 use super::front::front;
-use super::iso::{LEVELS, Price, prices};
-use super::{Charge, Part, Row, cost_tables, duel_tables, peers, ucurve};
+use super::{CostMeasure, Part, Row, comparison_tables, cost_tables, peers, rounding_optimum};
 use crate::error::Error;
 use crate::study::{Derived, distinct, short};
 use scenes::run::Precision;
@@ -16,11 +16,11 @@ use scenes::run::Precision;
 /// # Errors
 /// Rows that have no form as CSV.
 pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
-    let mut tables = vec![duel_tables::question(rows)?];
-    for charge in Charge::ALL {
-        tables.push(duel_tables::semi_implicit(rows, charge)?);
+    let mut tables = vec![comparison_tables::question(rows)?];
+    for charge in CostMeasure::ALL {
+        tables.push(comparison_tables::semi_implicit(rows, charge)?);
     }
-    tables.extend([iso(rows)?, fronts(rows)?, ucurve::table(rows)?]);
+    tables.extend([iso(rows)?, fronts(rows)?, rounding_optimum::table(rows)?]);
     tables.extend(vanish(rows)?);
     tables.extend(cost_tables::all(rows)?);
     tables.extend(peers::table(rows)?);
@@ -31,7 +31,7 @@ pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
 struct IsoRow {
     scene: String,
     error_level: f64,
-    charge: Charge,
+    charge: CostMeasure,
     method: String,
     precision: Precision,
     h_s: f64,
@@ -51,7 +51,7 @@ fn iso(rows: &[Row]) -> Result<Derived, Error> {
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();
         for level in LEVELS {
-            for charge in Charge::ALL {
+            for charge in CostMeasure::ALL {
                 lines.extend(iso_row(scene, level, charge, &prices(&of_scene, level, charge)));
             }
         }
@@ -62,17 +62,17 @@ fn iso(rows: &[Row]) -> Result<Derived, Error> {
         let at_most = if line.is_at_most { "≤ " } else { "" };
         let next = line.runner_up.as_deref().map_or_else(String::new, label);
         let price = match line.charge {
-            Charge::Evaluations => format!("{at_most}{:.0}", line.cost),
-            Charge::Time => format!("{at_most}{} µs/s", short(Some(line.cost / 1e3))),
+            CostMeasure::Evaluations => format!("{at_most}{:.0}", line.cost),
+            CostMeasure::Time => format!("{at_most}{} µs/s", short(Some(line.cost / 1e3))),
         };
         let method = match line.charge {
-            Charge::Evaluations => label(&line.method),
-            Charge::Time => format!("{}, {}", label(&line.method), line.precision.id()),
+            CostMeasure::Evaluations => label(&line.method),
+            CostMeasure::Time => format!("{}, {}", label(&line.method), line.precision.id()),
         };
         table.push([
             line.scene.clone(),
             format!("{:.0e}", line.error_level),
-            charge_name(line.charge).to_owned(),
+            cost_measure_name(line.charge).to_owned(),
             method,
             short(Some(line.h_s)),
             price,
@@ -89,7 +89,7 @@ fn iso(rows: &[Row]) -> Result<Derived, Error> {
     })
 }
 
-fn iso_row(scene: &str, error_level: f64, charge: Charge, prices: &[Price]) -> Option<IsoRow> {
+fn iso_row(scene: &str, error_level: f64, charge: CostMeasure, prices: &[CostAtError]) -> Option<IsoRow> {
     let best = prices.first()?;
     let next = prices.iter().find(|price| price.rule != best.rule);
     Some(IsoRow {
@@ -101,8 +101,8 @@ fn iso_row(scene: &str, error_level: f64, charge: Charge, prices: &[Price]) -> O
         h_s: best.h_s,
         cost: best.cost,
         cost_unit: match charge {
-            Charge::Evaluations => "evaluations",
-            Charge::Time => "ns per simulated second",
+            CostMeasure::Evaluations => "evaluations",
+            CostMeasure::Time => "ns per simulated second",
         },
         is_at_most: best.is_at_most,
         runner_up: next.map(|price| price.method.clone()),
@@ -115,7 +115,7 @@ fn iso_row(scene: &str, error_level: f64, charge: Charge, prices: &[Price]) -> O
 #[derive(Serialize)]
 struct FrontRow {
     scene: String,
-    charge: Charge,
+    charge: CostMeasure,
     cost: f64,
     error: f64,
     method: String,
@@ -132,13 +132,13 @@ fn fronts(rows: &[Row]) -> Result<Derived, Error> {
     let mut table = Table::new(&headers, &["errors of", "down to"]);
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();
-        for charge in Charge::ALL {
+        for charge in CostMeasure::ALL {
             let front: Vec<&Row> = front(&of_scene, charge).into_iter().map(|i| of_scene[i]).collect();
             for stretch in front.chunk_by(|a, b| a.method == b.method) {
                 let error = |row: Option<&&Row>| short(row.and_then(|row| row.error));
                 table.push([
                     scene.to_owned(),
-                    charge_name(charge).to_owned(),
+                    cost_measure_name(charge).to_owned(),
                     error(stretch.first()),
                     error(stretch.last()),
                     label(&stretch[0].method),

@@ -5,41 +5,41 @@ use std::cmp::Ordering;
 
 use integrator::methods::MethodId;
 
-use super::iso::{LEVELS, Offer, of_rule, prices};
-use super::{Charge, Part, Row};
+use super::cost_at_error::{CostBound, LEVELS, of_rule, prices};
+use super::{CostMeasure, Part, Row};
 use crate::study::distinct;
 
 /// The prices of one level on one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Duel {
+pub struct Comparison {
     /// The scene.
     pub scene: String,
     /// The level, m or rad.
     pub level: f64,
     /// What is charged.
-    pub charge: Charge,
+    pub charge: CostMeasure,
     /// Semi-implicit Euler.
-    pub semi_implicit: Offer,
+    pub semi_implicit: CostBound,
     /// RK4.
-    pub rk4: Offer,
+    pub rk4: CostBound,
     /// Implicit Euler.
-    pub implicit: Offer,
+    pub implicit: CostBound,
     /// The cheapest of all.
-    pub best: Option<super::iso::Price>,
+    pub best: Option<super::cost_at_error::CostAtError>,
 }
 
 /// Prices within this factor of each other are level: times have noise, and prices are interpolated.
 pub const LEVEL_WITH: f64 = 1.1;
 
 /// Every level on every scene, charged one way.
-pub fn duels(rows: &[Row], charge: Charge) -> Vec<Duel> {
+pub fn duels(rows: &[Row], charge: CostMeasure) -> Vec<Comparison> {
     let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
     let mut duels = Vec::new();
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();
         for level in LEVELS {
             let of = |method: MethodId| of_rule(&of_scene, level, charge, method.id());
-            duels.push(Duel {
+            duels.push(Comparison {
                 scene: scene.to_owned(),
                 level,
                 charge,
@@ -65,12 +65,12 @@ pub enum Factor {
 }
 
 /// The price of `a` over that of `b`; `None` where that of `b` is not known.
-pub fn factor(a: &Offer, b: &Offer) -> Option<Factor> {
-    let Offer::At(b) = b else { return None };
+pub fn factor(a: &CostBound, b: &CostBound) -> Option<Factor> {
+    let CostBound::At(b) = b else { return None };
     Some(match a {
-        Offer::At(a) => Factor::Of(a.cost / b.cost),
-        Offer::Above(a) => Factor::AtLeast(a.cost / b.cost),
-        Offer::Never => Factor::Never,
+        CostBound::At(a) => Factor::Of(a.cost / b.cost),
+        CostBound::Above(a) => Factor::AtLeast(a.cost / b.cost),
+        CostBound::Never => Factor::Never,
     })
 }
 
@@ -86,12 +86,12 @@ pub struct Between {
 impl Between {
     /// The price of `a` over that of `b`. A sweep that ends above the level bounds its price from below, one whose coarsest run
     /// meets it from above, and what never meets it has none.
-    pub fn of(a: &Offer, b: &Offer) -> Self {
-        let bounds = |offer: &Offer| match offer {
-            Offer::At(price) if price.is_at_most => (0.0, price.cost),
-            Offer::At(price) => (price.cost, price.cost),
-            Offer::Above(price) => (price.cost, f64::INFINITY),
-            Offer::Never => (f64::INFINITY, f64::INFINITY),
+    pub fn of(a: &CostBound, b: &CostBound) -> Self {
+        let bounds = |offer: &CostBound| match offer {
+            CostBound::At(price) if price.is_at_most => (0.0, price.cost),
+            CostBound::At(price) => (price.cost, price.cost),
+            CostBound::Above(price) => (price.cost, f64::INFINITY),
+            CostBound::Never => (f64::INFINITY, f64::INFINITY),
         };
         let ((a_low, a_high), (b_low, b_high)) = (bounds(a), bounds(b));
         let or = |quotient: f64, unknown: f64| if quotient.is_nan() { unknown } else { quotient };
@@ -105,10 +105,10 @@ impl Between {
     }
 }
 
-impl Duel {
+impl Comparison {
     /// By what factor semi-implicit Euler is beaten by the best; `None` where nothing reaches the level.
     pub fn beaten_by(&self) -> Option<Factor> {
-        factor(&self.semi_implicit, &Offer::At(self.best.clone()?))
+        factor(&self.semi_implicit, &CostBound::At(self.best.clone()?))
     }
 
     /// Whether semi-implicit Euler is the best buy, or level with it.

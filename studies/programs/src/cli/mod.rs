@@ -3,18 +3,18 @@
 pub mod bounds;
 mod color;
 mod list;
+mod messages;
 mod program;
 pub mod stability;
 pub mod tradeoff;
-mod voice;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::{Args, ColorChoice, ValueEnum};
 
+pub use messages::print;
 pub use program::{Ending, NoFlags, ProgramInfo, asking, main, report, start, with_tables};
-pub use voice::print;
 
 use crate::plan::Plan;
 use measure::error::Error;

@@ -7,7 +7,7 @@ use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use reports::{Block, Claim};
 
-use super::voice::{complain, note, of_flags, print};
+use super::messages::{complain, note, of_flags, print};
 use super::{Common, color, list};
 use crate::produce;
 use crate::produce::{Judged, REPORT, study};

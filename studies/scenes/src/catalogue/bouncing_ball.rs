@@ -18,7 +18,7 @@ use nalgebra::Vector1;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -299,7 +299,7 @@ impl Scene for BouncingBall {
         answerable::range("bouncing-ball", self, &seen, end)
     }
 
-    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
+    fn nonsmooth_times_s(&self, end_s: f64) -> Vec<f64> {
         let first = self.first_flight();
         let at = |n: u64| self.flight().times(Scaled::of_wide(first + self.flights(fx128::lit(n as f64))));
         (0..self.bounces(end_s)).map(|n| at(n).value().to_f64()).collect()
@@ -313,18 +313,18 @@ impl Scene for BouncingBall {
         false
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let mass = fx128::lit(self.mass);
         let energy = mass * (v * v * fx128::lit(0.5) + fx128::lit(self.gravity) * x);
         vec![
-            Entry { balance: Balance::Energy, value: vec![energy], conserved: self.restitution == 1.0 },
-            Entry { balance: Balance::Momentum, value: vec![mass * v], conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![energy], conserved: self.restitution == 1.0 },
+            Entry { invariant: Invariant::Momentum, value: vec![mass * v], conserved: false },
         ]
     }
 
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
-        if self.breaks_s(end_s).is_empty() {
+        if self.nonsmooth_times_s(end_s).is_empty() {
             return match (lag(method), quantity) {
                 (0.0, _) | (_, Quantity::Velocity) => Theory::exact("no bounce: v is linear in t, x a parabola"),
                 _ => Theory::with_constant(
@@ -344,8 +344,8 @@ impl Scene for BouncingBall {
         }
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
-        if self.restitution != 1.0 || balance != Balance::Energy {
+    fn growth(&self, method: MethodId, invariant: Invariant, _h_s: f64) -> Option<ExpectedGrowth> {
+        if self.restitution != 1.0 || invariant != Invariant::Energy {
             return None;
         }
         let (law, reason) = match lag(method) {

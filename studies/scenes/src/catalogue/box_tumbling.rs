@@ -14,7 +14,7 @@ use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -92,10 +92,10 @@ impl Scene for BoxTumbling {
         answerable::range("box-tumbling", self, &seen, end_s)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_of_flight(self.mass, self.inertia, lit(self.gravity), seen)
             .into_iter()
-            .map(|entry| Entry { conserved: entry.balance != Balance::Momentum, ..entry })
+            .map(|entry| Entry { conserved: entry.invariant != Invariant::Momentum, ..entry })
             .collect()
     }
 

@@ -16,7 +16,7 @@ use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::linear::{Linear, Parts};
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -160,15 +160,15 @@ impl Scene for ChargedParticle {
         })
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let mass = fx128::lit(self.mass);
         let kinetic = v.iter().fold(fx128::ZERO, |sum, &c| sum + c * c) * mass * fx128::lit(0.5);
         let field = x.iter().zip(self.electric).fold(fx128::ZERO, |sum, (&c, e)| sum + c * fx128::lit(e));
         let energy = kinetic - field * fx128::lit(self.charge);
         vec![
-            Entry { balance: Balance::Energy, value: vec![energy], conserved: true },
-            Entry { balance: Balance::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![energy], conserved: true },
+            Entry { invariant: Invariant::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
         ]
     }
 
@@ -176,7 +176,7 @@ impl Scene for ChargedParticle {
         self.linear().theory(method, quantity, end_s)
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, h_s: f64) -> Option<ExpectedGrowth> {
         let z = self.gyration() * h_s;
         let rate = |excess: f64, reason| ExpectedGrowth {
             law: Law::Exponential,
@@ -203,7 +203,7 @@ impl Scene for ChargedParticle {
             },
             _ => return None,
         };
-        (balance == Balance::Energy && self.is_a_circle()).then_some(growth)
+        (invariant == Invariant::Energy && self.is_a_circle()).then_some(growth)
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

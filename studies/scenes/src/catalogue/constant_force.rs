@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -87,14 +87,14 @@ impl Scene for ConstantForce {
         false
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let mass = fx128::lit(self.mass);
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let kinetic = v.iter().fold(fx128::ZERO, |sum, &c| sum + c * c) * mass * fx128::lit(0.5);
         let work = x.iter().zip(self.force).fold(fx128::ZERO, |sum, (&c, f)| sum + c * fx128::lit(f));
         vec![
-            Entry { balance: Balance::Energy, value: vec![kinetic - work], conserved: true },
-            Entry { balance: Balance::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![kinetic - work], conserved: true },
+            Entry { invariant: Invariant::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
         ]
     }
 
@@ -111,16 +111,16 @@ impl Scene for ConstantForce {
         }
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, _h_s: f64) -> Option<ExpectedGrowth> {
         use crate::theory::Law;
-        match (method, balance) {
-            (_, Balance::Momentum) => Some(ExpectedGrowth {
+        match (method, invariant) {
+            (_, Invariant::Momentum) => Some(ExpectedGrowth {
                 law: Law::AtTheFloor,
                 bounds: None,
                 seen_after_s: 0.0,
                 reason: "v is summed exactly but for rounding",
             }),
-            (MethodId::ExplicitEuler | MethodId::SemiImplicitEuler | MethodId::ImplicitEuler, Balance::Energy)
+            (MethodId::ExplicitEuler | MethodId::SemiImplicitEuler | MethodId::ImplicitEuler, Invariant::Energy)
                 if self.force != [0.0; 3] =>
             {
                 Some(ExpectedGrowth {
@@ -130,7 +130,7 @@ impl Scene for ConstantForce {
                     reason: "E - E0 = F . (a t h / 2), from the position error",
                 })
             }
-            (_, Balance::Energy) => Some(ExpectedGrowth {
+            (_, Invariant::Energy) => Some(ExpectedGrowth {
                 law: Law::AtTheFloor,
                 bounds: None,
                 seen_after_s: 0.0,

@@ -11,7 +11,7 @@ use nalgebra::Vector1;
 use crate::catalogue::answerable;
 use crate::catalogue::oscillation::Oscillation;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -113,10 +113,10 @@ impl Scene for DampedOscillator {
         self.zeta == 0.0
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let twice = fx128::lit(self.mass) * v * v + fx128::lit(self.stiffness) * x * x;
-        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.zeta == 0.0 }]
+        vec![Entry { invariant: Invariant::Energy, value: vec![twice * fx128::lit(0.5)], conserved: self.zeta == 0.0 }]
     }
 
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {

@@ -12,7 +12,7 @@ use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
@@ -97,11 +97,11 @@ impl Scene for HeavyTop {
     }
 
     /// Energy, and the vertical component of the angular momentum: the others are not conserved.
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let Some(attitude) = seen.rotation() else { return Vec::new() };
         let potential = fx128::lit(self.mgl) * up(attitude).z;
-        let mut entries = rigid::account(self.inertia(), seen, potential, true, true);
-        for entry in entries.iter_mut().filter(|entry| entry.balance == Balance::AngularMomentum) {
+        let mut entries = rigid::invariants(self.inertia(), seen, potential, true, true);
+        for entry in entries.iter_mut().filter(|entry| entry.invariant == Invariant::AngularMomentum) {
             entry.value.drain(..2);
         }
         entries

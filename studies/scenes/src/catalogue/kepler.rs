@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -143,7 +143,7 @@ impl Scene for Kepler {
         [self.mu, self.semi_major, self.eccentricity, self.anomaly].iter().all(|&x| f64::from(x as f32) == x)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let mass = fx128::lit(self.mass);
         let distance = (x[0] * x[0] + x[1] * x[1]).sqrt();
@@ -151,23 +151,23 @@ impl Scene for Kepler {
         let spin = x[0] * v[1] - x[1] * v[0];
         vec![
             Entry {
-                balance: Balance::Energy,
+                invariant: Invariant::Energy,
                 value: vec![mass * (kinetic - fx128::lit(self.mu) / distance)],
                 conserved: true,
             },
-            Entry { balance: Balance::AngularMomentum, value: vec![mass * spin], conserved: true },
+            Entry { invariant: Invariant::AngularMomentum, value: vec![mass * spin], conserved: true },
         ]
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, _h_s: f64) -> Option<ExpectedGrowth> {
         let symplectic =
             matches!(method, MethodId::SemiImplicitEuler | MethodId::VelocityVerlet | MethodId::ImplicitMidpoint);
-        let (law, reason) = match balance {
-            Balance::Energy => (Law::Bounded, "a symplectic method keeps a modified energy"),
-            Balance::AngularMomentum => {
+        let (law, reason) = match invariant {
+            Invariant::Energy => (Law::Bounded, "a symplectic method keeps a modified energy"),
+            Invariant::AngularMomentum => {
                 (Law::AtTheFloor, "r x v is a quadratic invariant of a central force, kept exactly")
             }
-            Balance::Momentum => return None,
+            Invariant::Momentum => return None,
         };
         // The energy error swings with the distance: a few revolutions show that it stays.
         let seen_after_s = 8.0 * std::f64::consts::TAU / self.mean_motion().value().to_f64();

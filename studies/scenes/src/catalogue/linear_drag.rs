@@ -12,7 +12,7 @@ use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::linear::{Linear, Parts, RK4_REAL};
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -122,14 +122,14 @@ impl Scene for LinearDrag {
         false
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let mass = fx128::lit(self.mass);
         let kinetic = v.iter().fold(fx128::ZERO, |sum, &c| sum + c * c) * fx128::lit(0.5);
         let potential = x.iter().zip(self.gravity).fold(fx128::ZERO, |sum, (&c, g)| sum - c * fx128::lit(g));
         vec![
-            Entry { balance: Balance::Energy, value: vec![(kinetic + potential) * mass], conserved: false },
-            Entry { balance: Balance::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![(kinetic + potential) * mass], conserved: false },
+            Entry { invariant: Invariant::Momentum, value: v.iter().map(|&c| c * mass).collect(), conserved: false },
         ]
     }
 

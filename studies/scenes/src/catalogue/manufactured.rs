@@ -173,7 +173,7 @@ impl Scene for Manufactured {
         Ok(())
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_of_flight(self.mass, self.inertia, lit([0.0; 3]), seen)
             .into_iter()
             .map(|entry| Entry { conserved: false, ..entry })

@@ -13,7 +13,7 @@ use nalgebra::Vector1;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -133,10 +133,10 @@ impl Scene for Oscillator {
         [self.mass, self.stiffness, self.x0, self.v0].iter().all(|&x| f64::from(x as f32) == x)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let twice = fx128::lit(self.mass) * v * v + fx128::lit(self.stiffness) * x * x;
-        vec![Entry { balance: Balance::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
+        vec![Entry { invariant: Invariant::Energy, value: vec![twice * fx128::lit(0.5)], conserved: true }]
     }
 
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
@@ -145,7 +145,7 @@ impl Scene for Oscillator {
         Theory::with_constant(method, constant, "leading term of the method's exact solution on x'' = -w^2 x")
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, h_s: f64) -> Option<ExpectedGrowth> {
         let z = self.omega() * h_s;
         let exponential = |per_step: f64, reason| ExpectedGrowth {
             law: Law::Exponential,
@@ -180,7 +180,7 @@ impl Scene for Oscillator {
             },
             _ => return None,
         };
-        (balance == Balance::Energy).then_some(growth)
+        (invariant == Invariant::Energy).then_some(growth)
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

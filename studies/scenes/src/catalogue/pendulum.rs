@@ -13,7 +13,7 @@ use nalgebra::Vector1;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -187,7 +187,7 @@ impl Scene for Pendulum {
         self.omega.abs() <= 2.0 * self.omega0().to_f64() * (0.5 * self.angle).cos().abs()
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (angle, rate) = (seen.vector(Quantity::Attitude)[0], seen.vector(Quantity::AngularVelocity)[0]);
         let (length, mass) = (fx128::lit(self.length), fx128::lit(self.mass));
         let (half, two) = (fx128::lit(0.5), fx128::lit(2.0));
@@ -195,8 +195,12 @@ impl Scene for Pendulum {
         // Height over the lowest position: l (1 - cos theta) without cancellation.
         let energy = mass * length * (length * rate * rate * half + fx128::lit(self.gravity) * two * sine * sine);
         vec![
-            Entry { balance: Balance::Energy, value: vec![energy], conserved: true },
-            Entry { balance: Balance::AngularMomentum, value: vec![mass * length * length * rate], conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![energy], conserved: true },
+            Entry {
+                invariant: Invariant::AngularMomentum,
+                value: vec![mass * length * length * rate],
+                conserved: false,
+            },
         ]
     }
 
@@ -224,10 +228,10 @@ impl Scene for Pendulum {
         )
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, _h_s: f64) -> Option<ExpectedGrowth> {
         let symplectic =
             matches!(method, MethodId::SemiImplicitEuler | MethodId::VelocityVerlet | MethodId::ImplicitMidpoint);
-        (symplectic && balance == Balance::Energy).then_some(ExpectedGrowth {
+        (symplectic && invariant == Invariant::Energy).then_some(ExpectedGrowth {
             law: Law::Bounded,
             bounds: None,
             seen_after_s: 8.0 * self.period_s(),

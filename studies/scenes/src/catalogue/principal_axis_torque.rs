@@ -128,7 +128,7 @@ impl Scene for PrincipalAxisTorque {
         true
     }
 
-    fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
         let start = unit_quaternion(self.attitude);
         let torque = start.rotate(self.along_axis(fx128::lit(self.torque)));
         let omega = start.rotate(self.along_axis(fx128::lit(self.omega)));

@@ -13,7 +13,7 @@ use nalgebra::Vector1;
 use crate::catalogue::answerable;
 use crate::catalogue::linear::RK4_REAL;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -188,7 +188,7 @@ impl Scene for QuadraticDrag {
         answerable::range("quadratic-drag", self, &seen, end_s)
     }
 
-    fn breaks_s(&self, end_s: f64) -> Vec<f64> {
+    fn nonsmooth_times_s(&self, end_s: f64) -> Vec<f64> {
         self.apex_s().into_iter().filter(|&apex| apex <= end_s).collect()
     }
 
@@ -200,13 +200,13 @@ impl Scene for QuadraticDrag {
         false
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let mass = fx128::lit(self.mass);
         let energy = mass * (v * v * fx128::lit(0.5) - fx128::lit(self.gravity) * x);
         vec![
-            Entry { balance: Balance::Energy, value: vec![energy], conserved: false },
-            Entry { balance: Balance::Momentum, value: vec![mass * v], conserved: false },
+            Entry { invariant: Invariant::Energy, value: vec![energy], conserved: false },
+            Entry { invariant: Invariant::Momentum, value: vec![mass * v], conserved: false },
         ]
     }
 

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use crate::catalogue::answerable;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::ParameterValue;
 use crate::scene::Info;
@@ -39,8 +39,8 @@ pub(crate) fn account_less_torque(
     let dot = integrator::rotation::dot;
     let gained = dot(torque, torque) * t / fx128::lit(2.0 * about_torque);
     let work = (dot(torque, omega0) + gained) * t;
-    let mut entries = account(inertia, seen, -work, true, true);
-    for entry in entries.iter_mut().filter(|entry| entry.balance == Balance::AngularMomentum) {
+    let mut entries = invariants(inertia, seen, -work, true, true);
+    for entry in entries.iter_mut().filter(|entry| entry.invariant == Invariant::AngularMomentum) {
         entry.value.iter_mut().zip(torque.iter()).for_each(|(l, &c)| *l -= c * t);
     }
     entries
@@ -62,7 +62,7 @@ pub(crate) fn theory_of_constant_torque(method: MethodId, quantity: Quantity, ga
 }
 
 /// Rotational energy plus `potential`, and angular momentum in the world frame.
-pub(crate) fn account(
+pub(crate) fn invariants(
     inertia: [f64; 3],
     seen: &Observation,
     potential: fx128,
@@ -77,12 +77,12 @@ pub(crate) fn account(
     let momentum = attitude.rotate(momentum_body);
     vec![
         Entry {
-            balance: Balance::Energy,
+            invariant: Invariant::Energy,
             value: vec![twice_energy * fx128::lit(0.5) + potential],
             conserved: energy_conserved,
         },
         Entry {
-            balance: Balance::AngularMomentum,
+            invariant: Invariant::AngularMomentum,
             value: momentum.iter().copied().collect(),
             conserved: momentum_conserved,
         },
@@ -101,9 +101,9 @@ pub(crate) fn account_of_flight(
     let mass = fx128::lit(mass);
     let [x, v] = [Quantity::Position, Quantity::Velocity].map(|q| Vector3::from_column_slice(seen.vector(q)));
     let translation = mass * (dot(v, v) * fx128::lit(0.5) - dot(gravity, x));
-    let mut entries = account(inertia, seen, translation, true, true);
+    let mut entries = invariants(inertia, seen, translation, true, true);
     let momentum = v.iter().map(|&c| c * mass).collect();
-    entries.push(Entry { balance: Balance::Momentum, value: momentum, conserved: false });
+    entries.push(Entry { invariant: Invariant::Momentum, value: momentum, conserved: false });
     entries
 }
 

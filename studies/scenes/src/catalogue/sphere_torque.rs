@@ -86,7 +86,7 @@ impl Scene for SphereTorque {
         answerable::phase("sphere-torque", most, (started + gained) * end_s, end_s)
     }
 
-    fn account(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_less_torque([self.inertia; 3], self.inertia, lit(self.torque), lit(self.omega), t, seen)
     }
 

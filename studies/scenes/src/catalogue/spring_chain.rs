@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, SVector};
 use crate::catalogue::answerable;
 use crate::catalogue::linear::{Linear, Parts};
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
@@ -188,7 +188,7 @@ impl Scene for SpringChain {
         answerable::range("spring-chain", self, &seen, end_s)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position), seen.vector(Quantity::Velocity));
         let square = |sum: fx128, c: fx128| sum + c * c;
         let kinetic = v.iter().copied().fold(fx128::ZERO, square) * fx128::lit(self.mass);
@@ -196,9 +196,13 @@ impl Scene for SpringChain {
         let stretched = inner.chain([x[0], x[MASSES - 1]]).fold(fx128::ZERO, square) * fx128::lit(self.stiffness);
         let momentum = v.iter().fold(fx128::ZERO, |sum, &c| sum + c) * fx128::lit(self.mass);
         vec![
-            Entry { balance: Balance::Energy, value: vec![(kinetic + stretched) * fx128::lit(0.5)], conserved: true },
+            Entry {
+                invariant: Invariant::Energy,
+                value: vec![(kinetic + stretched) * fx128::lit(0.5)],
+                conserved: true,
+            },
             // The walls push.
-            Entry { balance: Balance::Momentum, value: vec![momentum], conserved: false },
+            Entry { invariant: Invariant::Momentum, value: vec![momentum], conserved: false },
         ]
     }
 
@@ -206,14 +210,14 @@ impl Scene for SpringChain {
         self.linear().theory(method, quantity, end_s)
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, _h_s: f64) -> Option<ExpectedGrowth> {
+    fn growth(&self, method: MethodId, invariant: Invariant, _h_s: f64) -> Option<ExpectedGrowth> {
         let (law, reason) = match method {
             MethodId::SemiImplicitEuler => (Law::Bounded, "each mode keeps v^2 + w^2 x^2 - w^2 h x v"),
             MethodId::VelocityVerlet => (Law::Bounded, "each mode keeps v^2 + w^2 (1 - w^2 h^2/4) x^2"),
             MethodId::ImplicitMidpoint => (Law::AtTheFloor, "quadratic invariants are conserved exactly"),
             _ => return None,
         };
-        (balance == Balance::Energy).then_some(ExpectedGrowth { law, bounds: None, seen_after_s: 0.0, reason })
+        (invariant == Invariant::Energy).then_some(ExpectedGrowth { law, bounds: None, seen_after_s: 0.0, reason })
     }
 
     fn stability_limit(&self, method: MethodId) -> Option<(StabilityLimit, &'static str)> {

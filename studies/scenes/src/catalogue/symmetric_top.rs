@@ -14,7 +14,7 @@ use crate::catalogue::answerable;
 use crate::catalogue::constant_force::lit;
 use crate::catalogue::rigid;
 use crate::error::Error;
-use crate::invariants::{Balance, Entry};
+use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
@@ -100,12 +100,12 @@ impl Scene for SymmetricTop {
         answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
-        rigid::account(self.inertia(), seen, fx128::ZERO, true, true)
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+        rigid::invariants(self.inertia(), seen, fx128::ZERO, true, true)
     }
 
-    fn growth(&self, method: MethodId, balance: Balance, h_s: f64) -> Option<ExpectedGrowth> {
-        let known = method == MethodId::SemiImplicitEuler && balance == Balance::Energy && self.nutates();
+    fn growth(&self, method: MethodId, invariant: Invariant, h_s: f64) -> Option<ExpectedGrowth> {
+        let known = method == MethodId::SemiImplicitEuler && invariant == Invariant::Energy && self.nutates();
         let x = (self.inertia_3 / self.inertia_1 - 1.0) * self.omega[2] * h_s;
         known.then_some(ExpectedGrowth {
             law: Law::Exponential,

@@ -75,7 +75,7 @@ impl Scene for TorqueFreeSpin {
         rigid::check_free("torque-free-spin", &self.info(), &self.omega)
     }
 
-    fn account(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
-        rigid::account(self.inertia, seen, fx128::ZERO, true, true)
+    fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
+        rigid::invariants(self.inertia, seen, fx128::ZERO, true, true)
     }
 }

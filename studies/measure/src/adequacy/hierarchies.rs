@@ -36,7 +36,7 @@ type Run = Box<dyn Fn(MethodId, f64, u64) -> Option<End> + Send + Sync>;
 type Cost = Box<dyn Fn(MethodId) -> Option<u64> + Send + Sync>;
 
 /// One model of a scene.
-pub struct Rung {
+pub struct Level {
     /// What it models, or leaves out.
     pub model: &'static str,
     /// Whether its motion is the scene's, as far as the quantity of the ladder goes.
@@ -48,15 +48,15 @@ pub struct Rung {
 }
 
 /// The models of one scene, the least first, the full one last.
-pub struct Ladder {
+pub struct ModelHierarchy {
     /// The scene.
     pub scene: Box<dyn AnyScene>,
-    /// Its name among ladders.
+    /// Its name among hierarchies.
     pub name: &'static str,
     /// What is asked of the scene.
     pub quantity: Quantity,
     /// The models.
-    pub rungs: Vec<Rung>,
+    pub rungs: Vec<Level>,
 }
 
 fn rung<M>(
@@ -65,7 +65,7 @@ fn rung<M>(
     m: M,
     start: State<<M as Model<f64>>::Config>,
     see: impl Fn(&State<<M as Model<f64>>::Config>) -> Observation + Send + Sync + 'static,
-) -> Rung
+) -> Level
 where
     M: Model<f64> + Model<Counting> + Clone + Send + Sync + 'static,
     State<<M as Model<f64>>::Config>: Lift<Lifted = State<<M as Model<Counting>>::Config>>,
@@ -88,7 +88,7 @@ where
         MethodId::Rk4 => Some(operations::of_step(&Rk4, &costed, start.lift())),
         _ => None,
     };
-    Rung { model, consistent, run: Box::new(run), operations: Box::new(operations) }
+    Level { model, consistent, run: Box::new(run), operations: Box::new(operations) }
 }
 
 /// theta'' = acceleration, about one fixed axis.
@@ -131,7 +131,7 @@ impl<T: Real> Model<T> for SmallAngle {
 }
 
 /// The body turns about the axis it spins about at the start, and nothing changes that.
-fn one_angle<B: RigidMotion<f64>>(body: &B, acceleration: f64, consistent: bool) -> Rung {
+fn one_angle<B: RigidMotion<f64>>(body: &B, acceleration: f64, consistent: bool) -> Level {
     let at = body.exact(0.0);
     let rate = at.omega_body.norm();
     // A body at rest begins to turn about the axis of its torque.
@@ -158,7 +158,7 @@ fn one_angle<B: RigidMotion<f64>>(body: &B, acceleration: f64, consistent: bool)
 trait Body: RigidMotion<f64> + RigidBody<Counting> + Clone + Send + Sync + 'static {}
 impl<B: RigidMotion<f64> + RigidBody<Counting> + Clone + Send + Sync + 'static> Body for B {}
 
-fn rigid<M, B: Body>(name: &'static str, consistent: bool, model: M, body: &B) -> Rung
+fn rigid<M, B: Body>(name: &'static str, consistent: bool, model: M, body: &B) -> Level
 where
     M: RigidModel<f64> + Model<Counting> + Clone + Send + Sync + 'static,
     M::Body: RigidBody<f64, Position = <B as RigidBody<f64>>::Position>,
@@ -184,12 +184,12 @@ macro_rules! no_gyroscopic_term {
     };
 }
 
-fn ladder(name: &'static str, scene: Box<dyn AnyScene>, quantity: Quantity, rungs: Vec<Rung>) -> Ladder {
-    Ladder { scene, name, quantity, rungs }
+fn ladder(name: &'static str, scene: Box<dyn AnyScene>, quantity: Quantity, rungs: Vec<Level>) -> ModelHierarchy {
+    ModelHierarchy { scene, name, quantity, rungs }
 }
 
 /// Every ladder, with the parameters of the first of `scenes` that is its own, or the default ones.
-pub fn all(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
+pub fn all(scenes: &[Box<dyn AnyScene>]) -> Vec<ModelHierarchy> {
     let mut all = rotations(scenes);
     all.extend(translations(scenes));
     let swing: Pendulum = own(scenes, "pendulum");
@@ -221,7 +221,7 @@ fn keeps_its_axis<B: RigidMotion<f64> + Scene>(body: &B) -> bool {
 /// A turn that no run in f64 shows, rad.
 const UNSEEN: f64 = 1e-13;
 
-fn rotations(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
+fn rotations(scenes: &[Box<dyn AnyScene>]) -> Vec<ModelHierarchy> {
     let attitude = Quantity::Attitude;
     let free: TorqueFreeSpin = own(scenes, "torque-free-spin");
     let top: HeavyTop = own(scenes, "heavy-top");
@@ -267,7 +267,7 @@ fn scenes_still(top: &HeavyTop) -> bool {
         && start.z.abs() >= 1.0 - f64::EPSILON
 }
 
-fn translations(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
+fn translations(scenes: &[Box<dyn AnyScene>]) -> Vec<ModelHierarchy> {
     let position = Quantity::Position;
     let linear: LinearDrag = own(scenes, "linear-drag");
     let quadratic: QuadraticDrag = own(scenes, "quadratic-drag");
@@ -290,7 +290,7 @@ fn translations(scenes: &[Box<dyn AnyScene>]) -> Vec<Ladder> {
     vec![of_linear, of_quadratic, of_planet]
 }
 
-fn pendulum(name: &'static str, scene: Pendulum, consistent: bool) -> Ladder {
+fn pendulum(name: &'static str, scene: Pendulum, consistent: bool) -> ModelHierarchy {
     let start = Motion::<f64>::exact(&scene, 0.0);
     let model = SmallAngle { w_squared: scene.gravity / scene.length };
     let rungs = vec![

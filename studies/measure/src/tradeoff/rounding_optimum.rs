@@ -11,7 +11,7 @@ use reports::Table;
 use serde::Serialize;
 
 use super::candidate::Candidate;
-use super::iso::sweeps;
+use super::cost_at_error::sweeps;
 use super::{Part, Row};
 use crate::error::Error;
 use crate::study::{Derived, short};

@@ -13,7 +13,7 @@ use scenes::observation::{Observation, Quantity, largest, worse};
 use scenes::run::{Outcome, Trajectory};
 
 /// Samples of a run of the study.
-pub const LOOKS: u64 = 32;
+pub const SAMPLES: u64 = 32;
 /// The error of the exact motion's polynomials, in parts of the error that is asked for.
 const TARGET: f64 = 1.0 / 1024.0;
 /// The same in parts of the motion's size, where no error is asked for: what rounding allows.
@@ -22,9 +22,9 @@ const FINEST: f64 = 1e-13;
 const KNOWN: f64 = 64.0;
 
 /// The exact motion of a scene at the samples of every run, and, where asked for, at every step.
-pub struct Truth<'a> {
+pub struct ExactSamples<'a> {
     scene: &'a dyn AnyScene,
-    exact: errors::Truth,
+    exact: errors::ExactSamples,
     of: Of,
     end_s: f64,
     level: f64,
@@ -40,21 +40,21 @@ pub struct Errors {
     pub largest: f64,
 }
 
-impl<'a> Truth<'a> {
-    /// The exact motion at k T / `looks`.
-    pub fn new(scene: &'a dyn AnyScene, end_s: f64, looks: u64) -> Self {
-        let exact = errors::Truth::up_to(scene, end_s, looks);
-        Truth { scene, exact, of: Of::Configuration, end_s, level: f64::INFINITY, path: None }
+impl<'a> ExactSamples<'a> {
+    /// The exact motion at k T / `samples`.
+    pub fn new(scene: &'a dyn AnyScene, end_s: f64, samples: u64) -> Self {
+        let exact = errors::ExactSamples::up_to(scene, end_s, samples);
+        ExactSamples { scene, exact, of: Of::Configuration, end_s, level: f64::INFINITY, path: None }
     }
 
     /// The same for the errors of a quantity, prepared to be compared with errors near `level` at every step of a run.
     #[must_use]
     pub fn at_every_step(self, of: Of, level: f64) -> Self {
-        let truth = Truth { of, level, ..self };
+        let truth = ExactSamples { of, level, ..self };
         let target = if level.is_finite() { TARGET * level } else { FINEST * truth.scale() };
         let path = Path::new(truth.scene, of, truth.end_s, target);
         // Polynomials that are no better than the level decide nothing.
-        Truth { path: path.filter(|path| level > KNOWN * path.margin), ..truth }
+        ExactSamples { path: path.filter(|path| level > KNOWN * path.margin), ..truth }
     }
 
     /// Steps between two samples of a run of so many steps.
@@ -82,8 +82,8 @@ impl<'a> Truth<'a> {
 
     /// The largest size of what is asked for along the exact motion: |x| in m, an angle in rad, 1 for an attitude.
     pub fn scale(&self) -> f64 {
-        let samples = self.exact.looks();
-        if let Of::Balance(_) = self.of {
+        let samples = self.exact.samples();
+        if let Of::Invariant(_) = self.of {
             let size = |(i, seen): (usize, &Observation)| {
                 let t = self.time(i as u64, samples.len() as u64 - 1);
                 Coordinates::of(&self.of.values(self.scene, t, seen)).values.into_iter().fold(0.0, f64::hypot)
@@ -99,12 +99,12 @@ impl<'a> Truth<'a> {
 
     /// Units of the errors of this scene: `m`, `rad`, or both.
     pub fn unit(&self) -> &'static str {
-        self.of.unit(&self.exact.looks()[0])
+        self.of.unit(&self.exact.samples()[0])
     }
 
     /// Whether the scene has what is asked for, and whether its exact motion is finite.
     pub fn is_known(&self) -> [bool; 2] {
-        let samples = self.exact.looks();
+        let samples = self.exact.samples();
         let values = |i: usize| {
             let t = self.time(i as u64, samples.len() as u64 - 1);
             Coordinates::of(&self.of.values(self.scene, t, &samples[i])).values
@@ -115,7 +115,7 @@ impl<'a> Truth<'a> {
 
 /// Watches a run, step after step.
 pub struct Watch<'t, 'a> {
-    truth: &'t Truth<'a>,
+    truth: &'t ExactSamples<'a>,
     path: Option<&'t Path>,
     steps: u64,
     cursor: Cell<usize>,
@@ -124,13 +124,13 @@ pub struct Watch<'t, 'a> {
 
 impl<'t, 'a> Watch<'t, 'a> {
     /// Of a run of so many steps.
-    pub fn new(truth: &'t Truth<'a>, steps: u64) -> Self {
+    pub fn new(truth: &'t ExactSamples<'a>, steps: u64) -> Self {
         let path = truth.path.as_ref();
         Watch { truth, path, steps, cursor: Cell::new(0), largest: RefCell::new(None) }
     }
 
     /// Of the same run again, with the exact motion evaluated at every step.
-    pub fn exactly(truth: &'t Truth<'a>, steps: u64) -> Self {
+    pub fn exactly(truth: &'t ExactSamples<'a>, steps: u64) -> Self {
         Watch { path: None, ..Self::new(truth, steps) }
     }
 

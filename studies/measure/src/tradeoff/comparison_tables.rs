@@ -6,10 +6,10 @@ use reports::Table;
 use serde::Serialize;
 
 use super::candidate::Candidate;
-use super::cells::charge_name;
-use super::iso::{LEVELS, Offer};
-use super::verdict::{Between, Duel, Factor, duels};
-use super::{Charge, Row};
+use super::cells::cost_measure_name;
+use super::cost_at_error::{CostBound, LEVELS};
+use super::verdict::{Between, Comparison, Factor, duels};
+use super::{CostMeasure, Row};
 use crate::error::Error;
 use crate::study::{Derived, short};
 use scenes::run::Precision;
@@ -17,7 +17,7 @@ use scenes::run::Precision;
 #[derive(Serialize)]
 pub(super) struct QuestionRow {
     pub(super) error_level: f64,
-    pub(super) charge: Charge,
+    pub(super) charge: CostMeasure,
     pub(super) scenes: usize,
     pub(super) semi_implicit_is_best_or_level: usize,
     pub(super) rk4_known: usize,
@@ -32,7 +32,7 @@ pub(super) struct QuestionRow {
 /// How often semi-implicit Euler is the best buy.
 pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     let mut lines = Vec::new();
-    for charge in Charge::ALL {
+    for charge in CostMeasure::ALL {
         let all = duels(rows, charge);
         lines.extend(LEVELS.map(|level| question_row(&all, level, charge)));
     }
@@ -42,7 +42,7 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     for line in &lines {
         table.push([
             format!("{:.0e}", line.error_level),
-            charge_name(line.charge).to_owned(),
+            cost_measure_name(line.charge).to_owned(),
             line.scenes.to_string(),
             line.semi_implicit_is_best_or_level.to_string(),
             format!("{} of {} known", line.semi_implicit_beats_rk4, line.rk4_known),
@@ -61,9 +61,10 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
 }
 
 /// The same at one error, over the scenes on which it was reached.
-pub(super) fn question_row(duels: &[Duel], error_level: f64, charge: Charge) -> QuestionRow {
-    let duels: Vec<&Duel> = duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
-    let over = |of: fn(&Duel) -> &Offer| -> Vec<Between> {
+pub(super) fn question_row(duels: &[Comparison], error_level: f64, charge: CostMeasure) -> QuestionRow {
+    let duels: Vec<&Comparison> =
+        duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
+    let over = |of: fn(&Comparison) -> &CostBound| -> Vec<Between> {
         let all = duels.iter().map(|duel| Between::of(of(duel), &duel.semi_implicit));
         all.filter(|factor| factor.beside_one().is_some()).collect()
     };
@@ -98,7 +99,7 @@ fn median(factors: &[Between]) -> Option<f64> {
 struct DuelRow {
     scene: String,
     error_level: f64,
-    charge: Charge,
+    charge: CostMeasure,
     semi_implicit: Option<f64>,
     semi_implicit_is: &'static str,
     best: Option<f64>,
@@ -110,21 +111,21 @@ struct DuelRow {
 }
 
 /// On each scene and at each error: is semi-implicit Euler the best buy, and if not, by what is it beaten?
-pub(super) fn semi_implicit(rows: &[Row], charge: Charge) -> Result<Derived, Error> {
+pub(super) fn semi_implicit(rows: &[Row], charge: CostMeasure) -> Result<Derived, Error> {
     let all = duels(rows, charge);
-    let cost = |offer: &Offer| if let Offer::At(price) = offer { Some(price.cost) } else { None };
-    let line = |duel: &Duel| DuelRow {
+    let cost = |offer: &CostBound| if let CostBound::At(price) = offer { Some(price.cost) } else { None };
+    let line = |duel: &Comparison| DuelRow {
         scene: duel.scene.clone(),
         error_level: duel.level,
         charge,
         semi_implicit: match &duel.semi_implicit {
-            Offer::At(price) | Offer::Above(price) => Some(price.cost),
-            Offer::Never => None,
+            CostBound::At(price) | CostBound::Above(price) => Some(price.cost),
+            CostBound::Never => None,
         },
         semi_implicit_is: match &duel.semi_implicit {
-            Offer::At(_) => "met",
-            Offer::Above(_) => "more than this",
-            Offer::Never => "never",
+            CostBound::At(_) => "met",
+            CostBound::Above(_) => "more than this",
+            CostBound::Never => "never",
         },
         best: duel.best.as_ref().map(|best| best.cost),
         best_method: duel.best.as_ref().map_or_else(String::new, |best| best.method.clone()),
@@ -140,17 +141,17 @@ pub(super) fn semi_implicit(rows: &[Row], charge: Charge) -> Result<Derived, Err
     }
     let lines: Vec<DuelRow> = all.iter().map(line).collect();
     let (name, caption) = match charge {
-        Charge::Evaluations => (
+        CostMeasure::Evaluations => (
             "tradeoff-semi-implicit-evaluations",
             "Semi-implicit Euler charged in evaluations: the best buy at this error (m, rad), or by what factor it is beaten, \
              and by what",
         ),
-        Charge::Time => ("tradeoff-semi-implicit-time", "The same charged in time on this machine"),
+        CostMeasure::Time => ("tradeoff-semi-implicit-time", "The same charged in time on this machine"),
     };
     Ok(Derived { name, caption, csv: reports::write_csv(&lines)?, table })
 }
 
-fn cell(duel: &Duel) -> String {
+fn cell(duel: &Comparison) -> String {
     let Some((best, factor)) = duel.best.as_ref().zip(duel.beaten_by()) else { return "none reaches it".to_owned() };
     if duel.semi_implicit_is_best() {
         return "best buy".to_owned();

@@ -3,7 +3,7 @@
 /// First and last step of the shortest windows looked at, as powers of two.
 const FIRST_WINDOW: u32 = 4;
 /// Looks in one window. Their distance is odd, so that an error that alternates from step to step is seen in both phases.
-const LOOKS: u64 = 64;
+const SAMPLES: u64 = 64;
 /// A window whose largest size exceeds that of the one before by less than this does not grow: the largest of 64 looks at an
 /// oscillating size repeats to a few per cent.
 const STEADY: f64 = 1.1;
@@ -30,19 +30,19 @@ pub enum Trend {
 }
 
 /// The steps to look at in a run of 2^`log2_steps` steps: windows of doubling length.
-pub fn looks(log2_steps: u32) -> Vec<u64> {
+pub fn samples(log2_steps: u32) -> Vec<u64> {
     let mut steps = vec![0];
     for window in FIRST_WINDOW..log2_steps {
         let (start, length) = (1_u64 << window, 1_u64 << window);
-        let stride = (length / LOOKS).max(1) | 1;
-        steps.extend((0..LOOKS).map(|i| start + i * stride).take_while(|step| *step < start + length));
+        let stride = (length / SAMPLES).max(1) | 1;
+        steps.extend((0..SAMPLES).map(|i| start + i * stride).take_while(|step| *step < start + length));
     }
     steps.push(1 << log2_steps);
     steps.dedup();
     steps
 }
 
-/// The trend of a size seen at the steps of [`looks`]; `None` where a longer run has to decide.
+/// The trend of a size seen at the steps of [`samples`]; `None` where a longer run has to decide.
 ///
 /// In windows of doubling length the largest size of exponential growth rises by a factor that squares itself from window to
 /// window, that of a power stays the same, that of a bounded size tends to one.

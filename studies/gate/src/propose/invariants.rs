@@ -1,8 +1,8 @@
-//! Bounds on balances: how far they stray, and by which law.
+//! Bounds on invariants: how far they stray, and by which law.
 
 use faer::fx128;
 use integrator::methods::{Conserved, MethodId};
-use integrator::rigid_body::{AttitudeUpdate, Storage};
+use integrator::rigid_body::{AttitudeUpdate, Formulation};
 
 use super::{CLEAR, HALVINGS, Maker, TRUNCATION, around, between, from_zero};
 use crate::row::{Kind, Row, Subject};
@@ -10,38 +10,38 @@ use crate::stepper::Stepper;
 use measure::drift::{Drift, drifts, scale};
 use measure::rotation::claims::conserved;
 use measure::rotation::laws::energy_changes_with_one_sign;
-use scenes::invariants::Balance;
+use scenes::invariants::Invariant;
 use scenes::run::Precision;
 use scenes::theory::ExpectedGrowth;
 use scenes::theory::Law;
 
-/// Length of a run along which a balance is followed, in time scales, and its steps in one.
+/// Length of a run along which an invariant is followed, in time scales, and its steps in one.
 const TIME_SCALES: u64 = 128;
 const STEPS_A_TIME_SCALE: u64 = 32;
 
 impl Maker<'_> {
-    /// What theory says of the balances of a long run.
+    /// What theory says of the invariants of a long run.
     pub(super) fn growth(&self) -> Vec<Row> {
         let Some(method) = self.stepper.of_theory() else { return Vec::new() };
         let scene = self.scene.scene();
         let h_s = (scene.info().time_scale_s / STEPS_A_TIME_SCALE as f64).log2().round().exp2();
         let steps = TIME_SCALES * STEPS_A_TIME_SCALE;
-        let balances = [
-            (Balance::Energy, Drift::Energy),
-            (Balance::Momentum, Drift::MomentumNorm),
-            (Balance::AngularMomentum, Drift::AngularMomentumNorm),
+        let invariants = [
+            (Invariant::Energy, Drift::Energy),
+            (Invariant::Momentum, Drift::MomentumNorm),
+            (Invariant::AngularMomentum, Drift::AngularMomentumNorm),
         ];
         let mut rows = Vec::new();
-        for (balance, drift) in balances {
-            let Some(growth) = scene.expected_growth(method, balance, h_s) else { continue };
-            let row = |kind| self.row(Precision::F64, Subject::Balance(drift), kind, steps, h_s * steps as f64);
+        for (invariant, drift) in invariants {
+            let Some(growth) = scene.expected_growth(method, invariant, h_s) else { continue };
+            let row = |kind| self.row(Precision::F64, Subject::Invariant(drift), kind, steps, h_s * steps as f64);
             let measured = |kind| self.double.measure(&row(kind)).value().map(|x| (row(kind), x));
             rows.extend(grown(growth, measured));
         }
         rows
     }
 
-    /// The balances of a free body under every scheme.
+    /// The invariants of a free body under every scheme.
     pub(super) fn turning(&self) -> Vec<Row> {
         let Stepper::Turning(scheme) = self.stepper else { return Vec::new() };
         if self.scene.id() != "torque-free-spin" {
@@ -50,15 +50,15 @@ impl Maker<'_> {
         let (steps, end_s) = if self.stepper.is_implicit() { (1024, 16.0) } else { (4096, 16.0) };
         let kept = conserved(scheme);
         let momentum = kept.contains(&Conserved::Momentum);
-        let balances = [
+        let invariants = [
             (Drift::Energy, kept.contains(&Conserved::Energy), "T"),
             (Drift::AngularMomentumNorm, momentum || kept.contains(&Conserved::MomentumNorm), "|L|"),
             (Drift::AngularMomentumDirection, momentum, "the direction of L"),
         ];
         let eps = Precision::F64.epsilon();
         let mut rows = Vec::new();
-        for (drift, is_kept, name) in balances {
-            let row = self.row(Precision::F64, Subject::Balance(drift), Kind::Drift, steps, end_s);
+        for (drift, is_kept, name) in invariants {
+            let row = self.row(Precision::F64, Subject::Invariant(drift), Kind::Drift, steps, end_s);
             let Some(x) = self.double.measure(&row).value() else { continue };
             rows.push(if is_kept {
                 from_zero(row, x, eps, &format!("the scheme keeps {name} of a free body but for rounding"))
@@ -67,16 +67,16 @@ impl Maker<'_> {
             });
         }
         // The driver restores the norm, whatever the scheme: one scheme for each attitude update is enough.
-        let norm = self.row(Precision::F64, Subject::Balance(Drift::QuaternionNorm), Kind::Drift, steps, end_s);
+        let norm = self.row(Precision::F64, Subject::Invariant(Drift::QuaternionNorm), Kind::Drift, steps, end_s);
         let is_one =
-            self.stepper.method() == Some(MethodId::SemiImplicitEuler) && scheme.storage == Storage::WorldOmega;
+            self.stepper.method() == Some(MethodId::SemiImplicitEuler) && scheme.storage == Formulation::WorldOmega;
         if let Some(x) = self.double.measure(&norm).value().filter(|x| is_one && *x <= 16.0 * eps) {
             let reason =
                 "theory: |q| is restored every 64 steps, between which rounding moves it by sqrt(64) units: 16 eps";
             rows.push(between(norm, x, 0.0, 16.0 * eps, reason));
         }
         if energy_changes_with_one_sign(scheme) {
-            let row = self.row(Precision::F64, Subject::Balance(Drift::Energy), Kind::GrowthLaw, steps, end_s);
+            let row = self.row(Precision::F64, Subject::Invariant(Drift::Energy), Kind::GrowthLaw, steps, end_s);
             if let Some(x) = self.double.measure(&row).value().filter(|x| (0.8..=1.25).contains(x)) {
                 let reason =
                     "theory: linear, dT = +- h^2/2 v . J v or less a step with v = omega x I omega has one sign";
@@ -86,14 +86,14 @@ impl Maker<'_> {
         rows
     }
 
-    /// By what a step changes a balance of a free body.
+    /// By what a step changes an invariant of a free body.
     fn change_of(&self, name: &str) -> String {
         let Stepper::Turning(scheme) = self.stepper else { return String::new() };
         // In the body frame omega does not hear of the attitude, and so not of how that is advanced.
         let plain = self.stepper.method() == Some(MethodId::SemiImplicitEuler)
             && match scheme.storage {
-                Storage::BodyOmega => true,
-                Storage::WorldOmega => scheme.update == AttitudeUpdate::Exponential,
+                Formulation::BodyOmega => true,
+                Formulation::WorldOmega => scheme.update == AttitudeUpdate::Exponential,
                 _ => false,
             };
         match name {
@@ -103,20 +103,20 @@ impl Maker<'_> {
         }
     }
 
-    /// The balances that the exact motion conserves, along the error run, of whose growth theory says nothing.
-    pub(super) fn balances(&self, covered: &[Row]) -> Vec<Row> {
+    /// The invariants that the exact motion conserves, along the error run, of whose growth theory says nothing.
+    pub(super) fn invariants(&self, covered: &[Row]) -> Vec<Row> {
         let scene = self.scene.scene();
-        let first = scene.account(fx128::ZERO, &self.scene.exact(fx128::ZERO));
+        let first = scene.invariants(fx128::ZERO, &self.scene.exact(fx128::ZERO));
         if !first.iter().all(|entry| entry.conserved) {
             return Vec::new();
         }
         let mut rows = Vec::new();
         for (drift, _) in drifts(&first, &first) {
-            if scale(&first, drift) == 0.0 || covered.iter().any(|row| row.quantity == Subject::Balance(drift)) {
+            if scale(&first, drift) == 0.0 || covered.iter().any(|row| row.quantity == Subject::Invariant(drift)) {
                 continue;
             }
             let row =
-                self.row(Precision::F64, Subject::Balance(drift), Kind::Drift, self.steps(HALVINGS), self.horizon());
+                self.row(Precision::F64, Subject::Invariant(drift), Kind::Drift, self.steps(HALVINGS), self.horizon());
             let Some(x) = self.double.measure(&row).value().filter(|x| x.is_finite()) else { continue };
             let eps = Precision::F64.epsilon();
             // The rounding of a run of some hundred steps is below this.
@@ -130,7 +130,7 @@ impl Maker<'_> {
     }
 }
 
-/// Rows of a balance of whose growth theory speaks.
+/// Rows of an invariant of whose growth theory speaks.
 fn grown(growth: ExpectedGrowth, measured: impl Fn(Kind) -> Option<(Row, f64)>) -> Vec<Row> {
     let reason = growth.reason;
     let drift = || measured(Kind::Drift);
