@@ -1,8 +1,9 @@
 //! The gate: what the file may hold, what turns it red, what it says, and that it lets no wrong method pass.
 
 use gate::candidate::Candidate;
+use gate::deaths::deaths;
 use gate::known::Known;
-use gate::mutants::{Mutant, deaths};
+use gate::mutants::Mutant;
 use gate::row;
 use gate::row::{Kind, Row, Subject};
 use gate::stepper::{Ask, Stepper};
@@ -153,7 +154,7 @@ fn a_run_that_fails_and_a_number_that_is_none_break_their_rows() {
     assert!(check::report(&none.judged).contains("0 bounds hold, 0 broken"));
 }
 
-fn deaths_of_none(bounds: &Bounds) -> Vec<gate::mutants::Death> {
+fn deaths_of_none(bounds: &Bounds) -> Vec<gate::deaths::Death> {
     deaths(bounds, &[], &Progress::silent()).expect("nothing to run")
 }
 

@@ -11,7 +11,7 @@ use measure::rotation::Rotation;
 use measure::stability::Stability;
 use measure::study::Study;
 use measure::tradeoff::Tradeoff;
-use programs::cli::Format;
+use programs::options::Format;
 use programs::plan::Plan;
 use programs::produce::from_rows;
 use programs::provenance::{MANIFEST, Manifest};

@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use integrator::methods::MethodId;
-use programs::cli::Format;
+use programs::options::Format;
 use proptest::prelude::*;
 use reports::{Verdict, read_csv, write_csv};
 use scenes::run::{Outcome, Precision};

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::checks::error::ErrorOf;
 use crate::checks::{self, clamps, conservation, dynamics, kinematics, time};
+use crate::clock::Clock;
 use crate::error::Error;
 use crate::finding::{Check, Finding, Verdict};
 use crate::step::{self, Identified, Moves, StepVerdict};
@@ -125,7 +126,7 @@ pub fn judge(path: &Path, args: &Args) -> Result<FileReport, Error> {
 }
 
 /// How late the pose is, where a fault says so.
-fn pose_late(found: &[Finding], t: &Trajectory, clock: &time::Clock, record_every: Option<u64>) -> Option<f64> {
+fn pose_late(found: &[Finding], t: &Trajectory, clock: &Clock, record_every: Option<u64>) -> Option<f64> {
     let fault = |id: &str| found.iter().find(|f| f.id == id && f.verdict == Verdict::Fault);
     let one_step = || fault("pose-late-by-one-step").map(|_| clock.interval / record_every.unwrap_or(1) as f64);
     let lag = ["position-lags", "attitude-lags", "angle-lags"].iter().find_map(|id| fault(id)).map(|f| f.value);

@@ -21,6 +21,7 @@ pub mod audit;
 pub mod baseline;
 pub mod candidate;
 pub mod check;
+pub mod deaths;
 pub mod format;
 pub mod known;
 pub mod mutants;

@@ -2,6 +2,7 @@
 
 pub mod cli;
 mod findings;
+pub mod options;
 pub mod page;
 pub mod plan;
 pub mod produce;

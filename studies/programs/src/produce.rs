@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use reports::{Block, Claim, Figure, OutputDir, Section};
 
-use crate::cli::{Common, Format};
+use crate::options::{Common, Format};
 use crate::page;
 use crate::plan::Plan;
 use crate::provenance;

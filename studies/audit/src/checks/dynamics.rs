@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use super::time::Clock;
+use crate::clock::Clock;
 use crate::finding::{Check, Finding, Verdict, median, quantile};
 use crate::physics::{Force, Moment, acceleration};
 use crate::subject::{Ball, Subject};

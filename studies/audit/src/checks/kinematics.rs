@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 pub use attitude::contradictions;
 use attitude::{attitude, norm};
 
-use super::time::Clock;
+use crate::clock::Clock;
 use crate::finding::{Check, Finding, Verdict, quantile};
 use crate::trajectory::{Trajectory, Vectors};
 

@@ -1,23 +1,8 @@
 //! The clock: monotone, even, without gaps, repeats and resets; jitter; a sum in single precision.
 
+use crate::clock::Clock;
 use crate::finding::{Check, Finding, Verdict, median};
 use crate::trajectory::Trajectory;
-
-/// What is known of the clock of a file.
-#[derive(Clone, Debug, Default)]
-pub struct Clock {
-    /// The usual time between two rows, s.
-    pub interval: f64,
-    /// Pairs of rows (i, i + 1) that are no usual interval apart.
-    pub irregular: Vec<usize>,
-}
-
-impl Clock {
-    /// Whether rows i and i + 1 are the usual interval apart.
-    pub fn is_regular(&self, i: usize) -> bool {
-        self.irregular.binary_search(&i).is_err()
-    }
-}
 
 /// Most rows that a finding names.
 const NAMED: usize = 3;

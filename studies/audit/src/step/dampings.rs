@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::damping::{Damping, Rule, When};
 use super::steps_per_row;
-use crate::checks::time::Clock;
+use crate::clock::Clock;
 use crate::finding::quantile;
 use crate::trajectory::Trajectory;
 

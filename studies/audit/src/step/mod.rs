@@ -19,7 +19,7 @@ pub use candidate::Moves;
 use dampings::{dampings, given};
 use search::search;
 
-use crate::checks::time::Clock;
+use crate::clock::Clock;
 use crate::physics::{Force, Moment, Physics, acceleration};
 use crate::subject::Ball;
 use crate::trajectory::{Rounding, Trajectory};

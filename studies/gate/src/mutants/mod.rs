@@ -1,10 +1,7 @@
 //! Wrong methods, models and drivers that the bounds must not let pass. Each goes through the gate as a method from outside
 //! does, under the name of the method that it pretends to be.
 
-mod show;
 mod wrong;
-
-pub use show::{Death, deaths, summary};
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::pose::Fixed;

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ColorChoice, ValueEnum};
 
-use super::{Ending, ProgramInfo, threads, use_threads};
+use super::{Ending, ProgramInfo};
+use crate::options::{threads, use_threads};
 use gate::known::Known;
-use gate::{Bounds, Judged, Row, audit, baseline, check, format, mutants, read, row, update};
+use gate::{Bounds, Judged, Row, audit, baseline, check, deaths, format, read, row, update};
 use measure::error::Error;
 
 use measure::sweep::Progress;
@@ -129,8 +130,8 @@ pub fn run(cli: &Flags) -> Result<Ending, Error> {
     }
     let rows = chosen(cli, &bounds)?;
     if cli.mutants {
-        let deaths = mutants::deaths(&bounds, &rows, &progress)?;
-        return ending(mutants::summary(&deaths), !deaths.iter().any(mutants::Death::fails));
+        let deaths = deaths::deaths(&bounds, &rows, &progress)?;
+        return ending(deaths::summary(&deaths), !deaths.iter().any(deaths::Death::fails));
     }
     let judged = bounds.check(&rows, &progress)?;
     if let Some(path) = &cli.junit {

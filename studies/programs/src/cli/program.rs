@@ -8,7 +8,8 @@ use clap_complete::Shell;
 use reports::{Block, Claim};
 
 use super::messages::{complain, note, of_flags, print};
-use super::{Common, color, list};
+use super::{color, list};
+use crate::options::Common;
 use crate::produce;
 use crate::produce::{Judged, REPORT, study};
 use measure::error::Error;

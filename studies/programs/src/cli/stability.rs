@@ -3,7 +3,8 @@
 use clap::Args;
 use measure::stability::answer::{Answer, Question, answer};
 
-use super::{Common, Ending};
+use super::Ending;
+use crate::options::Common;
 use measure::error::Error;
 
 /// A step, or a rate, to judge: positive numbers, as the flags are read.

@@ -6,8 +6,9 @@ use measure::tradeoff::advice::{Question, advise_in};
 
 use measure::tradeoff::quantity::Of;
 
+use super::Ending;
 use super::stability::{frames_per_second, positive};
-use super::{Common, Ending};
+use crate::options::Common;
 
 /// What can be asked besides the study.
 #[derive(Args, Clone, Copy, Debug)]

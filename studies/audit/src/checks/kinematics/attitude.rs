@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{ATTITUDE, Moved, ROUNDINGS, factor, lag, late_start, shifted_misfit, without_jumps};
-use crate::checks::time::Clock;
+use crate::clock::Clock;
 use crate::finding::{Check, Finding, Verdict, quantile};
 use crate::read::names::NamedFrame;
 use crate::trajectory::Trajectory;

@@ -2,8 +2,8 @@
 
 use reports::Table;
 
-use super::Mutant;
 use crate::check::{Judged, judge};
+use crate::mutants::Mutant;
 use crate::{Bounds, Row};
 use measure::error::Error;
 use measure::sweep::Progress;
