@@ -34,4 +34,4 @@ pub use formula::mathml;
 pub use page::{Block, Finding, Page, Section};
 pub use plot::svg;
 pub use png::{DRAWS_PNG, png};
-pub use table::{Align, Table, read_csv, write_csv};
+pub use table::{Align, Table, columns_of_csv, read_csv, read_csv_with, write_csv};

@@ -25,9 +25,46 @@ pub fn write_csv<R: Serialize>(rows: &[R]) -> Result<String, Error> {
 /// # Errors
 /// [`Error::Csv`] with line and column: a field that cannot be read, a missing column, a line too long or too short.
 pub fn read_csv<R: DeserializeOwned>(text: &str, place: &str) -> Result<Vec<R>, Error> {
+    read_csv_with(text, place, &[])
+}
+
+/// The same where each record has these columns and cells as well, which the text does not repeat.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn read_csv_with<R: DeserializeOwned>(text: &str, place: &str, more: &[(&str, &str)]) -> Result<Vec<R>, Error> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let headers = reader.headers().map_err(|e| locate(&e, place, &csv::StringRecord::new()))?.clone();
-    reader.deserialize().map(|row| row.map_err(|e| locate(&e, place, &headers))).collect()
+    let mut headers = reader.headers().map_err(|e| locate(&e, place, &csv::StringRecord::new()))?.clone();
+    more.iter().for_each(|(name, _)| headers.push_field(name));
+    let row = |record: Result<csv::StringRecord, csv::Error>| {
+        let mut record = record?;
+        more.iter().for_each(|(_, cell)| record.push_field(cell));
+        record.deserialize(Some(&headers))
+    };
+    reader.records().map(|record| row(record).map_err(|e| locate(&e, place, &headers))).collect()
+}
+
+/// These columns of a CSV text with a header, in this order.
+///
+/// # Errors
+/// [`Error::Rows`] when there is no such column.
+pub fn columns_of_csv(text: &str, columns: &[&str]) -> Result<String, Error> {
+    let refuse = |message: String| Error::Rows { message };
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().map_err(|e| refuse(e.to_string()))?;
+    let place = |column: &&str| {
+        let found = headers.iter().position(|header| header == *column);
+        found.ok_or_else(|| refuse(format!("there is no column '{column}'")))
+    };
+    let places: Vec<usize> = columns.iter().map(place).collect::<Result<_, _>>()?;
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns).map_err(|e| refuse(e.to_string()))?;
+    for record in reader.records() {
+        let record = record.map_err(|e| refuse(e.to_string()))?;
+        writer.write_record(places.iter().map(|&at| &record[at])).map_err(|e| refuse(e.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|e| refuse(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| refuse(e.to_string()))
 }
 
 fn locate(error: &csv::Error, place: &str, headers: &csv::StringRecord) -> Error {

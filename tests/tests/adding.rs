@@ -138,9 +138,9 @@ fn every_study_runs_with_a_method_a_step_and_a_scene_that_are_one_file_and_one_r
         ("drift.csv", &[SCENE, METHOD]),
         ("rotation.csv", &["heavy-top", STEP]),
         ("rotation.csv", &["heavy-top", "explicit-midpoint/body-omega"]),
-        ("stability.csv", &[SCENE, METHOD]),
-        ("tradeoff.csv", &[SCENE, METHOD]),
-        ("tradeoff.csv", &["torque-free-spin", STEP]),
+        ("stability.limit.csv", &[SCENE, METHOD]),
+        ("tradeoff.run.csv", &[SCENE, METHOD]),
+        ("tradeoff.run.csv", &["torque-free-spin", STEP]),
     ] {
         assert!(has_row(&out, file, words), "{file} has no row of {words:?}");
     }

@@ -190,7 +190,7 @@ fn files_do_not_import_one_another_in_a_circle() {
         ("programs", "studies/programs"),
     ] {
         let known = modules(&root().join(folder).join("src"));
-        assert!(known.len() > 5, "{name}: its sources are not where this test looks");
+        assert!(known.len() > 5, "{name}: its sources are not where this test samples");
         assert_no_circle(name, &known);
     }
 }

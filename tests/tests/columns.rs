@@ -2,6 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use measure::stability::Stability;
+use measure::study::{Kind, Study};
+use measure::tradeoff::Tradeoff;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace").to_owned()
 }
@@ -15,12 +19,12 @@ const FILES: [(&str, &str, &str, &str); 11] = [
     ("rotation.csv", "one measured number of a scheme for rigid bodies", "studies/measure/src/rotation/row.rs", "Row"),
     ("adequacy.csv", "one run of a model", "studies/measure/src/adequacy/mod.rs", "Row"),
     (
-        "stability.csv",
+        "stability.*.csv",
         "one limit, one cell of a map or one point of a picture",
         "studies/measure/src/stability/mod.rs",
         "Row",
     ),
-    ("tradeoff.csv", "one run with its error and its cost", "studies/measure/src/tradeoff/mod.rs", "Row"),
+    ("tradeoff.*.csv", "one run with its error and its cost", "studies/measure/src/tradeoff/mod.rs", "Row"),
     ("ensemble.csv", "the errors of one quantity over all starts", "studies/measure/src/ensemble/mod.rs", "Row"),
     ("*-claims.csv", "one claim with its verdict", "reports/src/claim.rs", "Claim"),
     ("bounds.csv", "one committed bound", "studies/gate/src/row.rs", "Row"),
@@ -63,6 +67,15 @@ fn cell(kind: &str) -> String {
     format!("{word}{may_be_empty}")
 }
 
+/// The kinds of rows of a study that has several files, as the study lists them.
+fn kinds(file: &str) -> &'static [Kind] {
+    match file {
+        "stability.*.csv" => Stability::KINDS,
+        "tradeoff.*.csv" => Tradeoff::KINDS,
+        _ => &[],
+    }
+}
+
 fn page() -> String {
     let mut page = String::from(
         "# Columns of the CSV files\n\n\
@@ -74,7 +87,18 @@ fn page() -> String {
         let text = std::fs::read_to_string(root().join(source)).unwrap_or_else(|error| panic!("{source}: {error}"));
         page += &format!("\n## {file}\n\nOne record is {what}.\n\n| column | cell | meaning |\n|---|---|---|\n");
         for [column, kind, doc] in fields(&text, name) {
-            page += &format!("| `{column}` | {} | {} |\n", cell(&kind), doc.replace('|', "\\|"));
+            // It is the file's name.
+            if column != "part" {
+                page += &format!("| `{column}` | {} | {} |\n", cell(&kind), doc.replace('|', "\\|"));
+            }
+        }
+        let study = file.split('.').next().unwrap_or_default();
+        if !kinds(file).is_empty() {
+            page +=
+                "\nEach kind of record has a file and the columns that it needs:\n\n| file | columns |\n|---|---|\n";
+        }
+        for Kind { part, columns } in kinds(file) {
+            page += &format!("| `{study}.{part}.csv` | {} |\n", columns.replace(',', ", "));
         }
     }
     page
@@ -91,6 +115,18 @@ fn the_page_of_columns_is_what_the_row_types_say() {
     let committed = std::fs::read_to_string(&path).unwrap_or_default();
     let remedy = "run `UPDATE_COLUMNS=1 cargo test --release -p verification --test columns`";
     assert!(committed == page, "reports/guides/columns.md is not what the row types say; {remedy}");
+}
+
+// Fails if: a kind of record has a column that its row type does not, or a name that its file cannot be read back by.
+#[test]
+fn every_kind_of_record_has_columns_of_its_row_type() {
+    for (file, _, source, name) in FILES {
+        let text = std::fs::read_to_string(root().join(source)).expect("a source file");
+        let fields: Vec<String> = fields(&text, name).into_iter().map(|[name, _, _]| name).collect();
+        for column in kinds(file).iter().flat_map(|kind| kind.columns.split(',')) {
+            assert!(fields.iter().any(|field| field == column), "{file}: no field '{column}'");
+        }
+    }
 }
 
 // Fails if: a column has no documentation, or a file of the list has other columns than the program writes.

@@ -1,4 +1,4 @@
-//! The tradeoff study: fronts, prices, U-curves and steps that vanish.
+//! The tradeoff study: fronts, costs at an error, optimal steps and stagnation.
 //! Times are not looked at: they are not the same twice.
 
 use std::sync::OnceLock;
@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use integrator::methods::MethodId;
 use programs::options::Format;
 use proptest::prelude::*;
-use reports::{Verdict, read_csv, write_csv};
+use reports::Verdict;
 use scenes::run::{Outcome, Precision};
 
 use measure::study::{Selection, Study};
@@ -63,7 +63,7 @@ fn claims_about_other_numbers_are_broken() {
         row.scale = row.scale.map(|s| s * 1e4);
     }
     let claims = Tradeoff::claims(&wrong);
-    for (kind, least) in [("tradeoff.evaluations", 10), ("tradeoff.vanish", 6), ("tradeoff.u-curve", 4)] {
+    for (kind, least) in [("tradeoff.evaluations", 10), ("tradeoff.stagnation", 6), ("tradeoff.rounding-optimum", 4)] {
         let of_kind: Vec<_> = claims.iter().filter(|claim| claim.id.starts_with(kind)).collect();
         let broken = of_kind.iter().filter(|claim| claim.verdict == Verdict::Broken).count();
         assert!(broken >= least, "{kind}: {broken} of {} are broken", of_kind.len());
@@ -73,9 +73,13 @@ fn claims_about_other_numbers_are_broken() {
 /// Everything but the measuring starts from the rows: the same rows from their CSV give the same tables, charts and claims.
 #[test]
 fn tables_and_charts_are_the_same_from_the_csv() {
-    let csv = write_csv(rows()).expect("flat rows");
-    let again: Vec<Row> = read_csv(&csv, "tradeoff.csv").expect("what was written");
-    assert_eq!(again, rows());
+    let written = measure::files::write::<Tradeoff>(rows()).expect("flat rows");
+    let mut again: Vec<Row> = Vec::new();
+    for file in measure::files::of::<Tradeoff>() {
+        let Some((name, text)) = written.iter().find(|(name, _)| *name == file.name) else { continue };
+        again.extend(file.read::<Tradeoff>(text, name).expect("what was written"));
+    }
+    assert_eq!(again, measure::files::in_order::<Tradeoff>(rows().to_vec()));
     let files = |rows: &[Row]| {
         programs::produce::from_rows::<Tradeoff>(rows, &programs::plan::Plan::default(), Format::Svg)
             .expect("rows have a form")

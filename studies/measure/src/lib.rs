@@ -9,6 +9,7 @@ pub mod convergence;
 pub mod drift;
 pub mod ensemble;
 pub mod error;
+pub mod files;
 pub mod fit;
 pub mod growth;
 pub mod names;

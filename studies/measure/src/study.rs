@@ -91,6 +91,15 @@ pub trait Study {
     /// is refused.
     const HEEDS: &'static [&'static str];
 
+    /// The kinds of its rows, if there are several: each kind has a file of its own.
+    const KINDS: &'static [Kind] = &[];
+
+    /// The kind of a row: the `part` of one of [`Study::KINDS`].
+    fn part(row: &Self::Row) -> &'static str {
+        let _ = row;
+        ""
+    }
+
     /// Refuses a selection that leaves nothing to be run.
     ///
     /// # Errors
@@ -132,6 +141,15 @@ pub trait Study {
         let _ = row;
         Ok(())
     }
+}
+
+/// A kind of row of a study, with a file of its own.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// Its name: the value of the field `part`, and a part of the file's name.
+    pub part: &'static str,
+    /// The columns of its file, separated by commas. Every other field has its default value.
+    pub columns: &'static str,
 }
 
 /// Refuses a scene that is not in the catalogue.

@@ -42,8 +42,9 @@ pub fn html(
 pub(crate) type Linked = (Option<String>, (String, String));
 
 /// The section of a study: what belongs to one scene together, and the CSV of its rows and verdicts.
-pub(crate) fn section<S: Study>(blocks: Vec<Block>, linked: Vec<Linked>) -> Section {
-    let files = ["", "-claims"].map(|kind| format!("{}{kind}.csv", S::ID)).map(|name| (name.clone(), name)).to_vec();
+pub(crate) fn section<S: Study>(mut rows: Vec<String>, blocks: Vec<Block>, linked: Vec<Linked>) -> Section {
+    rows.push(format!("{}-claims.csv", S::ID));
+    let files = rows.into_iter().map(|name| (name.clone(), name)).collect();
     let rows = Block::Links { caption: "All rows and all claims".to_owned(), files };
     let blocks = std::iter::once(rows).chain(by_scene(S::ID, blocks, linked)).collect();
     Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks }

@@ -15,6 +15,7 @@ use measure::adequacy::Adequacy;
 use measure::convergence::Convergence;
 use measure::drift::DriftStudy;
 use measure::error::Error;
+use measure::files;
 use measure::rotation::Rotation;
 use measure::stability::Stability;
 use measure::study::{Derived, Selection, Study};
@@ -90,7 +91,7 @@ impl Source {
             Rows::Measured(selection) => {
                 S::check_selection(selection)?;
                 selection.progress.name(S::ID);
-                Ok(S::measure(selection))
+                Ok(files::in_order::<S>(S::measure(selection)))
             }
             Rows::Files(directory) => self.manifest.rows_of::<S>(directory),
         }
@@ -148,12 +149,14 @@ type Making = Box<dyn FnOnce(&Plan) -> Result<Product, Error> + Send>;
 /// # Errors
 /// Rows or figures that have no form as text.
 pub fn from_rows<S: Study>(rows: &[S::Row], plan: &Plan, format: Format) -> Result<Product, Error> {
-    let mut files = vec![(format!("{}.csv", S::ID), reports::write_csv(rows)?.into_bytes())];
+    let mut files: Vec<(String, Vec<u8>)> =
+        files::write::<S>(rows)?.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
+    let of_rows: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
     let claims = S::claims(rows);
     if let Some(id) = measure::claim::repeated(&claims) {
         let message =
             format!("two claims are named {id}: rows of a run stand twice or under another's name; run again");
-        return Err(Error::plan(format!("{}.csv", S::ID), message));
+        return Err(Error::plan(of_rows.join(", "), message));
     }
     let claims_csv = format!("{}-claims.csv", S::ID);
     files.push((claims_csv, reports::write_csv(&claims)?.into_bytes()));
@@ -175,7 +178,7 @@ pub fn from_rows<S: Study>(rows: &[S::Row], plan: &Plan, format: Format) -> Resu
         files.push((format!("{name}.csv"), csv.into_bytes()));
         blocks.push(Block::Table { caption: caption.to_owned(), table, csv: Some(format!("{name}.csv")) });
     }
-    let section = page::section::<S>(blocks, linked);
+    let section = page::section::<S>(of_rows, blocks, linked);
     Ok(Product { files, section, claims })
 }
 

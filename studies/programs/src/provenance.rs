@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::plan::Plan;
 use measure::error::Error;
+use measure::files::{self, RowFile};
 use measure::study::Study;
 
 /// What measured the rows of a report, and by which plan. A page needs nothing but this and the rows.
@@ -45,7 +46,7 @@ pub struct Seal {
 }
 
 /// The version of the columns that this program writes, and the only one that it reads.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The files of rows, one a study.
 const STUDIES: [&str; 7] = ["convergence", "drift", "rotation", "adequacy", "stability", "tradeoff", "ensemble"];
@@ -88,7 +89,11 @@ impl Manifest {
     /// # Errors
     /// As [`Plan::to_toml`].
     pub fn sealed(self, files: &[(String, Vec<u8>)]) -> Result<Self, Error> {
-        let is_rows = |name: &str| name.strip_suffix(".csv").is_some_and(|study| STUDIES.contains(&study));
+        let is_rows = |name: &str| {
+            name.strip_suffix(".csv")
+                .and_then(|name| name.split('.').next())
+                .is_some_and(|study| STUDIES.contains(&study))
+        };
         let seal = |(name, bytes): &(String, Vec<u8>)| {
             let rows = bytes.iter().filter(|byte| **byte == b'\n').count().saturating_sub(1);
             (name.clone(), Seal { rows, sha256: sha256(bytes) })
@@ -102,24 +107,36 @@ impl Manifest {
     /// # Errors
     /// Rows that cannot be read, that no run writes, or that are not those of the manifest: with file and line.
     pub fn rows_of<S: Study>(&self, directory: &Path) -> Result<Vec<S::Row>, Error> {
-        let name = format!("{}.csv", S::ID);
-        let path = directory.join(&name);
+        let files = files::of::<S>();
+        let listed: Vec<&RowFile> = files.iter().filter(|file| self.rows.contains_key(&file.name)).collect();
+        if listed.is_empty() {
+            let manifest = directory.join(MANIFEST).display().to_string();
+            let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+            let message = format!("rows: none of {} is among them; {REMEDY}", names.join(", "));
+            return Err(Error::plan(manifest, message));
+        }
+        let mut rows = Vec::new();
+        for file in listed {
+            rows.extend(self.rows_in::<S>(file, directory)?);
+        }
+        Ok(rows)
+    }
+
+    /// The rows of one file.
+    fn rows_in<S: Study>(&self, file: &RowFile, directory: &Path) -> Result<Vec<S::Row>, Error> {
+        let path = directory.join(&file.name);
         let place = path.display().to_string();
         let at = |line: usize, message: String| Error::plan(format!("{place}:{line}"), format!("{message}; {REMEDY}"));
         let text = read(&path)?;
-        let rows: Vec<S::Row> = reports::read_csv(&text, &place)?;
-        let header = reports::write_csv(&rows[..rows.len().min(1)])?;
-        let header = header.lines().next().unwrap_or_default();
-        if !rows.is_empty() && text.lines().next() != Some(header) {
+        let rows: Vec<S::Row> = file.read::<S>(&text, &place)?;
+        let header = file.header::<S>(&rows)?;
+        if !rows.is_empty() && text.lines().next() != Some(&header) {
             return Err(at(1, format!("the columns are not those of schema {SCHEMA}, {header}")));
         }
         for (line, row) in (2..).zip(&rows) {
             S::check(row).map_err(|message| at(line, message))?;
         }
-        let Some(seal) = self.rows.get(&name) else {
-            let manifest = directory.join(MANIFEST).display().to_string();
-            return Err(Error::plan(manifest, format!("rows: {name} is not among them; {REMEDY}")));
-        };
+        let seal = &self.rows[&file.name];
         if seal.rows != rows.len() {
             let message = format!("{} rows where {MANIFEST} counts {}", rows.len(), seal.rows);
             return Err(at(text.lines().count().max(1), message));

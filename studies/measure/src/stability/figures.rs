@@ -11,15 +11,21 @@ use super::{Part, Row};
 use crate::study::distinct;
 
 pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    figures.extend(Scheme::ALL.into_iter().filter_map(|scheme| damped(rows, scheme)));
-    figures.extend(maps::ONE_STEP.into_iter().filter_map(|method| region(rows, method)));
-    figures.extend(SpinScheme::ALL.into_iter().filter_map(|scheme| spin(rows, scheme)));
-    figures.extend(maps::ORBITING.into_iter().filter_map(|method| kepler(rows, method)));
-    figures.extend(pendulum(rows));
     let pictures = rows.iter().filter(|row| row.part == Part::Picture);
-    figures.extend(distinct(pictures.map(|row| row.scene.as_str())).into_iter().filter_map(|id| picture(rows, id)));
-    figures
+    let pictured = distinct(pictures.map(|row| row.scene.as_str()));
+    let of = |part: Part, figures: Vec<Option<Figure>>| {
+        let data = format!("stability.{}.csv", part.id());
+        figures.into_iter().flatten().map(|figure| Figure { data: data.clone(), ..figure }).collect::<Vec<_>>()
+    };
+    [
+        of(Part::DampedMap, Scheme::ALL.into_iter().map(|scheme| damped(rows, scheme)).collect()),
+        of(Part::Region, maps::ONE_STEP.into_iter().map(|method| region(rows, method)).collect()),
+        of(Part::SpinMap, SpinScheme::ALL.into_iter().map(|scheme| spin(rows, scheme)).collect()),
+        of(Part::KeplerMap, maps::ORBITING.into_iter().map(|method| kepler(rows, method)).collect()),
+        of(Part::PendulumAmplitude, vec![pendulum(rows)]),
+        of(Part::Picture, pictured.into_iter().map(|id| picture(rows, id)).collect()),
+    ]
+    .concat()
 }
 
 fn chosen<'a>(rows: &'a [Row], part: Part, method: &str) -> Option<Vec<&'a Row>> {
@@ -46,7 +52,6 @@ fn figure(id: &str, title: String, caption: &str, x: Axis, y: Axis, layers: Vec<
         y,
         layers,
         scene: Some(scene.to_owned()),
-        data: "stability.csv".to_owned(),
         ..Figure::default()
     }
 }

@@ -22,7 +22,7 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study};
+use crate::study::{Derived, Kind, Selection, Study};
 use crate::sweep::in_parallel;
 use failure::Failure;
 use maps::{Grid, MapRow};
@@ -31,6 +31,13 @@ use scenes::any::AnyScene;
 use scenes::run::Precision;
 use scenes::stepping::Stepping;
 use spin::SpinScheme;
+
+/// The columns that every kind of row has.
+macro_rules! columns {
+    ($part:literal: $own:literal) => {
+        Kind { part: $part, columns: concat!("scene,method,precision,quantity,unit,", $own) }
+    };
+}
 
 /// What a row belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -62,6 +69,26 @@ pub enum Part {
     Picture,
 }
 
+impl Part {
+    /// Its name, as in a file's name.
+    pub fn id(self) -> &'static str {
+        match self {
+            Part::Limit => "limit",
+            Part::GrowthRate => "growth-rate",
+            Part::Unconditional => "unconditional",
+            Part::DampedMap => "damped-map",
+            Part::SpinMap => "spin-map",
+            Part::Region => "region",
+            Part::KeplerMap => "kepler-map",
+            Part::QuadraticDrag => "quadratic-drag",
+            Part::PendulumAmplitude => "pendulum-amplitude",
+            Part::BlowUp => "blow-up",
+            Part::Ball => "ball",
+            Part::Picture => "picture",
+        }
+    }
+}
+
 /// One measurement. What is measured, and its unit, stand in `quantity` and `unit`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -74,32 +101,44 @@ pub struct Row {
     /// Arithmetic.
     pub precision: Precision,
     /// Step, s.
+    #[serde(default)]
     pub h_s: Option<f64>,
     /// Step over the natural time scale of the scene: h omega, k h.
+    #[serde(default)]
     pub h_omega: Option<f64>,
     /// What else was varied, with its unit; empty for nothing.
+    #[serde(default)]
     pub parameter: String,
     /// Its value.
+    #[serde(default)]
     pub value: Option<f64>,
     /// What was measured.
     pub quantity: String,
     /// Unit of the measured numbers.
     pub unit: String,
     /// Low end of a bracket: the largest step that held.
+    #[serde(default)]
     pub low: Option<f64>,
     /// High end of a bracket: the smallest step that failed.
+    #[serde(default)]
     pub high: Option<f64>,
     /// What was measured, where it is one number.
+    #[serde(default)]
     pub measured: Option<f64>,
     /// What theory says (0: no step is stable; inf: every step is).
+    #[serde(default)]
     pub theory: Option<f64>,
     /// The same by a closed form, where there is one.
+    #[serde(default)]
     pub closed_form: Option<f64>,
     /// What goes wrong: beyond the limit, or at this point.
+    #[serde(default)]
     pub failure: Failure,
     /// Steps taken.
+    #[serde(default)]
     pub steps: u64,
     /// Where the theory comes from.
+    #[serde(default)]
     pub note: String,
 }
 
@@ -145,6 +184,25 @@ impl Study for Stability {
     const INTRO: &'static str = "The largest stable step of every method on every linear scene, found by bisection on the \
         running scene and held against the amplification matrix and the closed forms; maps of where a method holds; and one \
         picture for each way in which it can fail.";
+
+    const KINDS: &'static [Kind] = &[
+        columns!("limit": "low,high,theory,closed_form,failure,steps,note"),
+        columns!("growth-rate": "h_s,h_omega,measured,theory,failure,steps,note"),
+        columns!("unconditional": "h_s,h_omega,measured,theory,failure,steps"),
+        columns!("damped-map": "h_omega,parameter,value,measured,theory,failure"),
+        columns!("spin-map": "h_omega,parameter,value,measured,theory,failure"),
+        columns!("region": "h_omega,parameter,value,measured,theory"),
+        columns!("kepler-map": "h_omega,parameter,value,measured,failure"),
+        columns!("quadratic-drag": "low,high,theory,failure,steps,note"),
+        columns!("pendulum-amplitude": "parameter,value,low,high,theory,failure,steps,note"),
+        columns!("blow-up": "h_s,measured,theory,failure,steps,note"),
+        columns!("ball": "h_s,measured,failure,steps"),
+        columns!("picture": "parameter,value,measured,failure"),
+    ];
+
+    fn part(row: &Row) -> &'static str {
+        row.part.id()
+    }
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let jobs = jobs(selection);

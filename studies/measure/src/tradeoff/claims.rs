@@ -14,8 +14,8 @@ use crate::study::{distinct, short};
 pub(super) fn all(rows: &[Row]) -> Vec<Claim> {
     let mut claims = evaluations(rows);
     claims.extend(question(rows));
-    claims.extend(rows.iter().filter(|row| row.part == Part::Vanish).map(vanish));
-    claims.extend(minima(rows).iter().filter(|minimum| is_judged(minimum)).flat_map(u_curve));
+    claims.extend(rows.iter().filter(|row| row.part == Part::Stagnation).map(stagnation));
+    claims.extend(minima(rows).iter().filter(|minimum| is_judged(minimum)).flat_map(rounding_optimum));
     claims
 }
 
@@ -68,7 +68,7 @@ fn question(rows: &[Row]) -> Option<Claim> {
 /// Roundings on the way to the first increment: of h, of g h and of g h^2, each of eps / 2, and the width of the bracket.
 const ROUNDINGS: f64 = 4.0;
 
-fn vanish(row: &Row) -> Claim {
+fn stagnation(row: &Row) -> Claim {
     let slack = ROUNDINGS * row.precision.epsilon();
     let [low, high, theory] = [row.at_rest_h_s, row.moving_h_s, row.theory_h_s].map(|x| x.unwrap_or(f64::NAN));
     let height = row.position_m.unwrap_or(f64::NAN);
@@ -82,7 +82,7 @@ fn vanish(row: &Row) -> Claim {
         format!("within {ROUNDINGS} eps"),
     ];
     let holds = low <= theory * (1.0 + slack) && high >= theory * (1.0 - slack) && high - low <= slack * high;
-    claim(&format!("vanish.{}.{height}", row.precision.id()), texts, [Evidence::is(holds)])
+    claim(&format!("stagnation.{}.{height}", row.precision.id()), texts, [Evidence::is(holds)])
 }
 
 /// The yardsticks, and of a rigid body what is stored in the body frame.
@@ -97,12 +97,12 @@ fn is_judged(minimum: &Minimum) -> bool {
 /// The grid of steps is one of powers of two, and near the bottom of the curve two errors may cancel or add.
 const GRID: f64 = 2.0;
 
-fn u_curve(minimum: &Minimum) -> Vec<Claim> {
+fn rounding_optimum(minimum: &Minimum) -> Vec<Claim> {
     let Minimum { scene, method, precision, .. } = minimum;
     let (fewest, most) = (minimum.biased_steps / GRID, minimum.random_steps * GRID);
     let steps = minimum.steps as f64;
     let (least, largest) = (minimum.random_error / GRID, minimum.biased_error * GRID);
-    let id = |what: &str| format!("u-curve.{scene}.{method}.{}.{what}", precision.id());
+    let id = |what: &str| format!("rounding-optimum.{scene}.{method}.{}.{what}", precision.id());
     vec![
         claim(
             &id("steps"),

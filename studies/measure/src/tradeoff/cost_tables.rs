@@ -94,7 +94,7 @@ fn storage(rows: &[Row]) -> Result<Option<Derived>, Error> {
         ]);
     }
     Ok((!lines.is_empty()).then_some(Derived {
-        name: "tradeoff-storage",
+        name: "tradeoff-formulation",
         caption: "The angular velocity of the body beside that of the world: the same motion with semi-implicit Euler, at a part of \
                   the cost of a step",
         csv: reports::write_csv(&lines)?,

@@ -19,7 +19,7 @@ const ON_PAGE: [&str; 5] = [
     "work-time-pendulum",
     "work-time-kepler",
     "work-time-tennis-racket",
-    "u-curve-tennis-racket",
+    "rounding-optimum-tennis-racket",
 ];
 
 /// Errors above this are no errors of a method that follows the motion at all.
@@ -33,7 +33,7 @@ pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
         let sweeps = sweeps(of_scene);
         figures.extend(CostMeasure::ALL.into_iter().filter_map(|charge| work(&sweeps, charge)));
         let of_scene: Vec<&Minimum> = minima.iter().filter(|m| m.scene == of_scene[0].scene).collect();
-        figures.extend(u_curve(&sweeps, &of_scene));
+        figures.extend(rounding_optimum(&sweeps, &of_scene));
     }
     figures
 }
@@ -68,7 +68,7 @@ fn work(sweeps: &[Vec<&Row>], charge: CostMeasure) -> Option<Figure> {
         y: Axis::log(y),
         layers,
         scene: Some(scene.to_owned()),
-        data: "tradeoff.csv".to_owned(),
+        data: "tradeoff.run.csv".to_owned(),
         ..Figure::default()
     })
 }
@@ -115,7 +115,7 @@ fn is_shown(candidate: Candidate, charge: CostMeasure) -> bool {
     }
 }
 
-fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
+fn rounding_optimum(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
     let mut layers = Vec::new();
     for sweep in sweeps {
         let first = sweep[0];
@@ -137,7 +137,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         layers.push(model(minimum, sweep));
     }
     let first = sweeps.first().and_then(|sweep| sweep.first()).filter(|_| !layers.is_empty())?;
-    let id = format!("u-curve-{}", first.scene.replace('/', "-"));
+    let id = format!("rounding-optimum-{}", first.scene.replace('/', "-"));
     Some(Figure {
         on_page: ON_PAGE.contains(&id.as_str()),
         id,
@@ -150,7 +150,7 @@ fn u_curve(sweeps: &[Vec<&Row>], minima: &[&Minimum]) -> Option<Figure> {
         y: Axis::log(format!("largest error up to the horizon ({})", first.unit)),
         layers,
         scene: Some(first.scene.to_owned()),
-        data: "tradeoff.csv".to_owned(),
+        data: "tradeoff.run.csv".to_owned(),
         ..Figure::default()
     })
 }

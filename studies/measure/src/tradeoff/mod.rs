@@ -32,7 +32,7 @@ use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::study::{Derived, Selection, Study, check_method, check_scene, check_steps};
+use crate::study::{Derived, Kind, Selection, Study, check_method, check_scene, check_steps};
 use candidate::Candidate;
 use scenes::run::{Outcome, Precision};
 
@@ -45,7 +45,7 @@ pub enum Part {
     /// The same run timed with ever more steps, for the cost of a step.
     Length,
     /// The step below which a body at rest does not begin to fall.
-    Vanish,
+    Stagnation,
 }
 
 /// One run.
@@ -64,36 +64,50 @@ pub struct Row {
     /// Step, s.
     pub h_s: f64,
     /// Unit of the errors.
+    #[serde(default)]
     pub unit: String,
     /// How the run ended.
     pub outcome: Outcome,
     /// Error at the end.
+    #[serde(default)]
     pub error_end: Option<f64>,
     /// Largest error at 32 evenly spaced times, the end among them.
+    #[serde(default)]
     pub error: Option<f64>,
     /// Largest distance from the run of the same step in the next finer arithmetic, at the same times.
+    #[serde(default)]
     pub rounding: Option<f64>,
     /// The largest size of the configuration in the exact motion, in the same unit; 1 for an attitude.
+    #[serde(default)]
     pub scale: Option<f64>,
     /// Evaluations of the force law.
     pub evaluations: u64,
     /// Number of steps of the run that was timed.
+    #[serde(default)]
     pub timed_steps: Option<u64>,
     /// Time of a step, least over the rounds.
+    #[serde(default)]
     pub least_ns_per_step: Option<f64>,
     /// The same, median.
+    #[serde(default)]
     pub median_ns_per_step: Option<f64>,
     /// The same, upper quartile.
+    #[serde(default)]
     pub upper_ns_per_step: Option<f64>,
     /// The same in cycles of the clock chain of the same round, least.
+    #[serde(default)]
     pub cycles_per_step: Option<f64>,
     /// Height at which a body is let go.
+    #[serde(default)]
     pub position_m: Option<f64>,
     /// The largest step tried after which it has not moved.
+    #[serde(default)]
     pub at_rest_h_s: Option<f64>,
     /// The smallest step tried after which it has.
+    #[serde(default)]
     pub moving_h_s: Option<f64>,
     /// The step between the two by theory.
+    #[serde(default)]
     pub theory_h_s: Option<f64>,
 }
 
@@ -119,6 +133,32 @@ impl Study for Tradeoff {
         error twice: in evaluations of the force law, which are counted and the same on every machine, and in time, which was \
         measured on this one, apart from the runs that gave the errors. The error is the largest at 32 times up to the horizon, of \
         positions in m and of angles in rad.";
+
+    const KINDS: &'static [Kind] = &[
+        Kind {
+            part: "run",
+            columns: "scene,method,precision,steps,h_s,unit,outcome,error_end,error,rounding,scale,evaluations,\
+                      timed_steps,least_ns_per_step,median_ns_per_step,upper_ns_per_step,cycles_per_step",
+        },
+        Kind {
+            part: "length",
+            columns: "scene,method,precision,steps,h_s,outcome,evaluations,\
+                      timed_steps,least_ns_per_step,median_ns_per_step,upper_ns_per_step,cycles_per_step",
+        },
+        Kind {
+            part: "stagnation",
+            columns: "scene,method,precision,steps,h_s,unit,outcome,evaluations,\
+                      position_m,at_rest_h_s,moving_h_s,theory_h_s",
+        },
+    ];
+
+    fn part(row: &Row) -> &'static str {
+        match row.part {
+            Part::Run => "run",
+            Part::Length => "length",
+            Part::Stagnation => "stagnation",
+        }
+    }
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let mut rows = runs::errors(selection);

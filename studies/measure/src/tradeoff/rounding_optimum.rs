@@ -153,7 +153,7 @@ pub fn table(rows: &[Row]) -> Result<Derived, Error> {
         ]);
     }
     Ok(Derived {
-        name: "tradeoff-u-curves",
+        name: "tradeoff-rounding-optimum",
         caption: "Where a smaller step makes it worse: the least error of a sweep, and between which minima theory puts it, with \
                   roundings that all go one way (eps S n) and roundings that are independent (eps S sqrt(n) / 10)",
         csv: reports::write_csv(&minima)?,

@@ -40,7 +40,14 @@ fn row(precision: Precision, height_m: f64) -> Row {
         at_rest_h_s: Some(at_rest),
         moving_h_s: Some(moving),
         theory_h_s: Some(theory),
-        ..Row::new(Part::Vanish, "constant-force", MethodId::SemiImplicitEuler.id().to_owned(), precision, 1, moving)
+        ..Row::new(
+            Part::Stagnation,
+            "constant-force",
+            MethodId::SemiImplicitEuler.id().to_owned(),
+            precision,
+            1,
+            moving,
+        )
     }
 }
 

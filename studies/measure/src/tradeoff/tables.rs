@@ -20,8 +20,8 @@ pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
     for charge in CostMeasure::ALL {
         tables.push(comparison_tables::semi_implicit(rows, charge)?);
     }
-    tables.extend([iso(rows)?, fronts(rows)?, rounding_optimum::table(rows)?]);
-    tables.extend(vanish(rows)?);
+    tables.extend([cost_at_error(rows)?, fronts(rows)?, rounding_optimum::table(rows)?]);
+    tables.extend(stagnation(rows)?);
     tables.extend(cost_tables::all(rows)?);
     tables.extend(peers::table(rows)?);
     Ok(tables)
@@ -45,7 +45,7 @@ struct IsoRow {
 }
 
 /// The cheapest method at each error, and the next.
-fn iso(rows: &[Row]) -> Result<Derived, Error> {
+fn cost_at_error(rows: &[Row]) -> Result<Derived, Error> {
     let runs = runs(rows);
     let mut lines = Vec::new();
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
@@ -81,7 +81,7 @@ fn iso(rows: &[Row]) -> Result<Derived, Error> {
         ]);
     }
     Ok(Derived {
-        name: "tradeoff-iso-error",
+        name: "tradeoff-cost-at-error",
         caption: "The cheapest method at an error (the largest up to the horizon), in evaluations up to the horizon and in time \
                   for a simulated second; '≤' where the coarsest run keeps the error already",
         csv: reports::write_csv(&lines)?,
@@ -167,8 +167,8 @@ fn fronts(rows: &[Row]) -> Result<Derived, Error> {
 }
 
 /// The step below which f32 and f64 stand still.
-fn vanish(rows: &[Row]) -> Result<Option<Derived>, Error> {
-    let seen: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Vanish).collect();
+fn stagnation(rows: &[Row]) -> Result<Option<Derived>, Error> {
+    let seen: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Stagnation).collect();
     let headers = ["arithmetic", "let go at (m)", "stands still at (s)", "moves at (s)", "theory (s)"];
     let mut table = Table::new(&headers, &headers[1..]);
     for row in &seen {
@@ -176,7 +176,7 @@ fn vanish(rows: &[Row]) -> Result<Option<Derived>, Error> {
         table.push(std::iter::once(row.precision.id().to_owned()).chain(numbers.map(short)));
     }
     Ok((!seen.is_empty()).then_some(Derived {
-        name: "tradeoff-vanish",
+        name: "tradeoff-stagnation",
         caption: "A body at rest at x m under 9.75 m/s²: below sqrt(ulp(x) / 2g) the first step of semi-implicit Euler moves it \
                   by less than half the distance to the next number, and not at all",
         csv: reports::write_csv(&seen)?,
