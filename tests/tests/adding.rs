@@ -117,6 +117,8 @@ fn every_study_runs_with_a_method_a_step_and_a_scene_that_are_one_file_and_one_r
     let build = Command::new(env!("CARGO"))
         .args(["build", "--release", "--quiet", "--locked", "-p", "programs", "--bins"])
         .env("CARGO_TARGET_DIR", &target)
+        // What the copy has in common with the workspace is compiled already.
+        .env("CARGO_BUILD_BUILD_DIR", root().join("target"))
         .current_dir(&copy)
         .output()
         .expect("cargo runs");

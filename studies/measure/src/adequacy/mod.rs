@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::claim;
 use crate::claim::{Evidence, largest};
 use crate::error::Error;
+use crate::order::local_order;
 use crate::study::{Derived, Selection, Study, check_method, check_steps, distinct, short};
 use crate::sweep::in_parallel;
 use hierarchies::{Level, METHODS, ModelHierarchy};
@@ -193,7 +194,7 @@ fn seen(sweep: &[&Row]) -> ObservedOrder {
     let above: Vec<(f64, f64)> =
         sweep.iter().filter_map(|row| Some((row.h_s, row.error.filter(|e| *e > FLOOR)?))).collect();
     let order = match above[..] {
-        [.., a, b] => Some((a.1 / b.1).log2() / (a.0 / b.0).log2()),
+        [.., coarse, fine] => local_order(coarse, fine),
         _ => None,
     };
     let near = |row: &&&Row| finest.zip(row.error).is_some_and(|(f, e)| (e / f - 1.0).abs() <= 0.1);

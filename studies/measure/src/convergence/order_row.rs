@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::order::{Sample, Verdict};
+use crate::order::{Sample, Verdict, local_order};
 use scenes::observation::Quantity;
 use scenes::run::Precision;
 
@@ -98,5 +98,5 @@ pub(super) fn finest_order(samples: &[Sample], rounding: impl Fn(&Sample) -> f64
     let is_clear = |s: &&Sample| s.error.is_some_and(|e| e.is_finite() && e > rounding(s));
     let clear: Vec<&Sample> = samples.iter().filter(is_clear).collect();
     let (fine, coarse) = (clear.last()?, clear.get(clear.len().checked_sub(4)?)?);
-    Some((coarse.error? / fine.error?).ln() / (coarse.h_s / fine.h_s).ln())
+    local_order((coarse.h_s, coarse.error?), (fine.h_s, fine.error?))
 }

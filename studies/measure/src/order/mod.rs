@@ -76,6 +76,14 @@ impl Order {
     }
 }
 
+/// The order between two runs, `ln(e_1 / e_2) / ln(h_1 / h_2)`, each a step with its error; `None` where an error is zero or not
+/// finite.
+pub fn local_order(coarse: (f64, f64), fine: (f64, f64)) -> Option<f64> {
+    let is_usable = |e: f64| e.is_finite() && e > 0.0;
+    let order = || (coarse.1 / fine.1).ln() / (coarse.0 / fine.0).ln();
+    (is_usable(coarse.1) && is_usable(fine.1)).then(order)
+}
+
 /// The observed order of `samples`, which go from the coarsest step to the finest.
 ///
 /// Failed runs, errors that are not finite and saturated errors are never fitted, and none of them can pass. Steps that

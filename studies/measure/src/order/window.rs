@@ -1,6 +1,6 @@
 //! The search for the window of steps that show the order.
 
-use super::{Limits, Sample};
+use super::{Limits, Sample, local_order};
 
 /// A point counts if rounding is at most an eighth of its error. Rounding then moves its local order by at most
 /// log2(1 + 1/8) = 0.17, and the slope of a four-point fit, in which the last point weighs 0.3, by at most 0.05;
@@ -56,8 +56,7 @@ pub(super) fn is_exact(sample: &Sample, h_0: f64, limits: &Limits) -> bool {
 
 /// Local orders `ln(e_i / e_(i+1)) / ln(h_i / h_(i+1))`; None where an error is missing, zero or not finite.
 pub(super) fn local_orders(samples: &[Sample]) -> Vec<Option<f64>> {
-    let ln_error = |s: &Sample| s.error.filter(|e| e.is_finite() && *e > 0.0).map(f64::ln);
-    samples.windows(2).map(|w| Some((ln_error(&w[0])? - ln_error(&w[1])?) / (w[0].h_s / w[1].h_s).ln())).collect()
+    samples.windows(2).map(|w| local_order((w[0].h_s, w[0].error?), (w[1].h_s, w[1].error?))).collect()
 }
 
 /// Whether rounding can bend the local orders at this sample.

@@ -7,7 +7,7 @@ use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
 use crate::convergence::{Approach, limit};
-use crate::order::Sample;
+use crate::order::{Sample, local_order};
 use crate::study::{Selection, distinct};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
@@ -152,9 +152,8 @@ pub fn orders(rows: &[Row]) -> Vec<ObservedOrder> {
 fn seen(sweep: &[&Row]) -> ObservedOrder {
     let first = sweep[0];
     let points: Vec<(f64, f64)> = sweep.iter().filter_map(|row| Some((row.h_s, row.value?))).collect();
-    let above: Vec<(f64, f64)> =
-        points.iter().copied().filter(|(_, e)| *e > FLOOR).map(|(h, e)| (h.log2(), e.log2())).collect();
-    let local: Vec<f64> = above.windows(2).map(|w| (w[0].1 - w[1].1) / (w[0].0 - w[1].0)).collect();
+    let above: Vec<(f64, f64)> = points.iter().copied().filter(|(_, e)| *e > FLOOR).collect();
+    let local: Vec<f64> = above.windows(2).filter_map(|w| local_order(w[0], w[1])).collect();
     // p(h) = p + c h: halving h halves what is wrong with it.
     let order = match local[..] {
         [.., coarse, fine] => Some((2.0 * fine - coarse, (fine - coarse).abs())),

@@ -10,6 +10,7 @@ use super::failure::{Failure, Signal};
 use super::models::Damped;
 use super::spin::{Free, at_rest, thin_body};
 use super::{Part, Row};
+use crate::order::local_order;
 use scenes::ForcedOscillator;
 use scenes::motion::Motion;
 use scenes::observation::{Observation, Quantity};
@@ -246,8 +247,8 @@ fn order_lost() -> Vec<Curve> {
             };
             let points: Vec<[f64; 2]> = (4..14).filter_map(|j| error(1 << j)).collect();
             // The best of the coarse against the worst of the fine half: an error that jumps about its trend.
-            let ends = (points.first()?, points.last()?);
-            let observed = (ends.0[1] / ends.1[1]).ln() / (ends.0[0] / ends.1[0]).ln();
+            let ([h_coarse, coarse], [h_fine, fine]) = (*points.first()?, *points.last()?);
+            let observed = local_order((h_coarse, coarse), (h_fine, fine))?;
             Some(Curve { name: format!("RK4, {id}"), points, failure: Failure::of_order(observed, 4.0) })
         })
         .collect()

@@ -14,6 +14,7 @@ use super::candidate::Candidate;
 use super::cost_at_error::sweeps;
 use super::{Part, Row};
 use crate::error::Error;
+use crate::order::local_order;
 use crate::study::{Derived, short};
 use scenes::run::Precision;
 
@@ -116,7 +117,7 @@ fn truncation(reference: &[&Row], near: u64, order: u32) -> Option<f64> {
     let usable: Vec<(u64, f64)> =
         reference.iter().filter(|row| row.steps <= near).filter_map(|row| Some((row.steps, row.scored()?))).collect();
     let [.., (n1, e1), (n2, e2)] = usable[..] else { return None };
-    let seen = (e1 / e2).ln() / (n2 as f64 / n1 as f64).ln();
+    let seen = local_order((1.0 / n1 as f64, e1), (1.0 / n2 as f64, e2))?;
     ((seen - f64::from(order)).abs() <= ORDER_SLACK).then(|| e2 * (n2 as f64).powi(order as i32))
 }
 
