@@ -250,7 +250,7 @@ fn rows_that_no_run_wrote_or_another_run_wrote_are_refused() {
         row.split(',').enumerate().filter(|(i, _)| *i != column).map(|(_, x)| x).collect::<Vec<_>>().join(",")
     };
     let missing = [vec![header(lines[0])], lines[1..].iter().map(less).collect()].concat().join("\n");
-    refused("convergence.csv", missing.as_bytes(), "convergence.csv:1: the columns are not those of schema 1");
+    refused("convergence.csv", missing.as_bytes(), "convergence.csv:1: the columns are not those of schema 2");
     let scene = rows.replacen("\nconstant-force,", "\nconstant-farce,", 1);
     refused("convergence.csv", scene.as_bytes(), "convergence.csv:2: scene 'constant-farce' is unknown");
     let method = rows.replacen(",rk4,", ",rk5,", 1);

@@ -19,4 +19,5 @@ pub mod rotation;
 pub mod stability;
 pub mod study;
 pub mod sweep;
+pub mod tables;
 pub mod tradeoff;

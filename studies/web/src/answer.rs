@@ -190,7 +190,7 @@ fn describe(scene: &dyn AnyScene) -> String {
     }
     for entry in stated.invariants(fx128::ZERO, &start) {
         let conserved = if entry.conserved { "conserved" } else { "changing" };
-        line(&["invariant", entry.invariant.id(), entry.invariant.unit(), &entry.value.len().to_string(), conserved]);
+        line(&["balance", entry.invariant.id(), entry.invariant.unit(), &entry.value.len().to_string(), conserved]);
     }
     text
 }
