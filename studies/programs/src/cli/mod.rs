@@ -4,6 +4,7 @@ pub mod bounds;
 mod color;
 mod list;
 mod messages;
+pub mod order;
 mod program;
 pub mod stability;
 pub mod tradeoff;
