@@ -49,6 +49,23 @@ pub fn exact(subject: &Subject, t: &Trajectory, pose_late: f64) -> Exact {
                 out.body = Some(times.iter().map(|t| free(&top, c, *t)).collect());
                 out.source.push("Jacobi's elliptic functions");
             }
+            // A symmetric top has a closed form.
+            Moment::Weight { arm, gravity } if inertia.x == inertia.y && arm.xy().norm() == 0.0 => {
+                let top = scenes::HeavyTop {
+                    inertia_1: inertia.x,
+                    inertia_3: inertia.z,
+                    mgl: arm.z * gravity.norm(),
+                    attitude: q0.wxyz(),
+                    omega: omega.into(),
+                };
+                let at = |t: f64| scenes::motion::RigidMotion::<f64>::exact(&top, t);
+                let pose_and_rate = |[pose, rate]: &[f64; 2]| {
+                    let late = at(*rate);
+                    (at(*pose).attitude, late.attitude.rotate(late.omega_body))
+                };
+                out.body = Some(times.iter().map(pose_and_rate).collect());
+                out.source.push("elliptic integrals");
+            }
             Moment::Weight { .. } => {
                 out.body = reference::top(inertia, moment, q0, omega, &times);
                 out.source.push("converged run of order 4");

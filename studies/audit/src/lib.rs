@@ -7,6 +7,7 @@
 //! Architecture invariants: no guess is silent, a tie is reported as a tie; nothing panics on a file.
 
 pub mod checks;
+pub mod cli;
 pub mod clock;
 pub mod error;
 pub mod exact;

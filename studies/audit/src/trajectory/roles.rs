@@ -79,6 +79,10 @@ fn add_groups(layout: &mut Layout, table: &Table, known: &[Option<Known>], role:
     if !sizes(role).contains(&wanted) {
         return;
     }
+    // `omega_body_z` beside an angular velocity in space is a component of a second one, and no rate of an angle.
+    if role == Role::AngleRate && layout.get(Role::Omega).is_some() && layout.get(Role::Angle).is_none() {
+        return;
+    }
     let mut stems: Vec<&str> = Vec::new();
     for known in known.iter().flatten().filter(|k| k.roles.contains(&role)) {
         if !stems.contains(&known.stem.as_str()) {

@@ -2,6 +2,8 @@
 
 pub mod bounds;
 mod color;
+pub mod exact;
+pub mod front;
 mod list;
 mod messages;
 pub mod order;

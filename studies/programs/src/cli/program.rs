@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use reports::{Block, Claim};
 
 use super::messages::{complain, note, of_flags, print};
-use super::{color, list};
+use super::{color, front, list};
 use crate::options::Common;
 use crate::produce;
 use crate::produce::{Judged, REPORT, study};
@@ -167,7 +167,7 @@ fn of_studies<F: Args>(words: ProgramInfo, run: impl Fn(&Common, &F) -> Result<E
 /// Reads the flags, does what they ask for and ends: 0 all is well, 1 a claim is broken, 2 the input or the output was wrong,
 /// 130 interrupted.
 pub fn start<F: Args>(words: ProgramInfo, run: impl Fn(F) -> Result<Ending, Error>) -> ExitCode {
-    let arguments: Vec<String> = std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect();
+    let arguments: Vec<String> = front::arguments().iter().map(|a| a.to_string_lossy().into_owned()).collect();
     color::choose(&arguments);
     // Ctrl-C, SIGTERM and SIGHUP let files that are being put in their places arrive. Without a handler they would still end the
     // program.
@@ -188,7 +188,9 @@ pub fn start<F: Args>(words: ProgramInfo, run: impl Fn(F) -> Result<Ending, Erro
 
 fn perform<F: Args>(words: &ProgramInfo, run: impl Fn(F) -> Result<Ending, Error>) -> Result<Ending, Error> {
     let said = |text| Ok(Ending { text, note: None, code: 0 });
-    let parsed = command::<F>(words).try_get_matches().and_then(|matches| Cli::<F>::from_arg_matches(&matches));
+    let parsed = command::<F>(words)
+        .try_get_matches_from(front::arguments())
+        .and_then(|matches| Cli::<F>::from_arg_matches(&matches));
     match parsed {
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             said(error.render().ansi().to_string())
