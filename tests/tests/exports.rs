@@ -263,11 +263,11 @@ fn rows_that_no_run_wrote_or_another_run_wrote_are_refused() {
     refused("manifest.json", &files(other.path())["manifest.json"], "not the file that manifest.json describes");
     let plan = text(&good["manifest.json"]).replace("\"rk4\"", "\"velocity-verlet\"");
     refused("manifest.json", plan.as_bytes(), "manifest.json:8: not the plan that the rows were measured by");
-    let schema = text(&good["manifest.json"]).replace("\"schema\": 1", "\"schema\": 2");
+    let schema = text(&good["manifest.json"]).replace("\"schema\": 2", "\"schema\": 3");
     refused(
         "manifest.json",
         schema.as_bytes(),
-        "manifest.json:2: rows of schema 2, and this program reads schema 1; run again",
+        "manifest.json:2: rows of schema 3, and this program reads schema 2; run again",
     );
     let (_, output) = report(&["--from", path(whole.path())]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));

@@ -8,6 +8,7 @@ use std::fmt::Write;
 use gate::mutants::Mutant;
 use gate::stepper::{Ask, Stepper};
 use integrator::methods::MethodId;
+use measure::adequacy::Adequacy;
 use measure::claim::Evidence;
 use measure::convergence::{Convergence, Row, judge, orders};
 use measure::drift::DriftStudy;
@@ -17,6 +18,7 @@ use measure::sweep::Progress;
 use reports::{Claim, Verdict};
 use scenes::any::AnyScene;
 use scenes::errors::ExactSamples;
+use scenes::observation::Quantity;
 use scenes::parameters::Range;
 use scenes::run::Precision;
 use scenes::scheme::Scheme;
@@ -159,15 +161,59 @@ fn verdicts(scene: Box<dyn AnyScene>) -> Vec<String> {
     all.extend(broken(&DriftStudy::claims(&DriftStudy::measure(&in_f64))));
     let in_f64 = Selection { steps: Vec::new(), ..in_f64 };
     all.extend(broken(&Rotation::claims(&turning::measure(&in_f64, &Scheme::all()))));
+    all.extend(broken(&Adequacy::claims(&Adequacy::measure(&in_f64))));
     all
 }
 
+/// Draws that once got a wrong verdict, one of each kind.
+const FOUND: [(&str, &[(&str, &str)]); 12] = [
+    // The bound on an extrapolation was small by chance, where a term of the error passes zero.
+    ("symmetric-top/rod", &[("inertia_1", "1.7499999999999998"), ("inertia_3", "0.375")]),
+    (
+        "charged-particle",
+        &[
+            ("mass", "0.04"),
+            ("electric", "-32,0.014,0.625"),
+            ("magnetic", "0,-0.12,-0.126"),
+            ("v0", "-0.046,4.8,-1.12"),
+        ],
+    ),
+    // A distance |a + b h| bends where a is small.
+    ("tennis-racket", &[("inertia", "7.399,7.3099,7.6088"), ("omega", "4.479,2.5,0")]),
+    // The angle turned and the instability of the axis multiply a rounding.
+    ("principal-axis-torque", &[("inertia", "0.5774,1.3645,1.6761"), ("omega", "-0.0236"), ("torque", "-12.974")]),
+    ("torque-free-spin", &[("inertia", "6.785,0.0939,6.8536"), ("omega", "12.13,0,0")]),
+    // Bounces near the end, and a kink that has just been passed.
+    ("bouncing-ball/inelastic", &[("mass", "7.6"), ("restitution", "0.8734"), ("x0", "0.6617"), ("v0", "1.25")]),
+    ("quadratic-drag/rise", &[("drag", "0.00085"), ("x0", "0"), ("v0", "-20.427")]),
+    // Steps too long for the motion: a coarse run fails, or points anywhere.
+    ("box-tumbling", &[("omega", "0.00337,12.6375,-0.0248"), ("gravity", "0,-99,0")]),
+    ("box-tumbling", &[("omega", "0,-155.4,0.003")]),
+    ("manufactured", &[("mass", "0.6"), ("v0", "-0.031,0,0"), ("swing", "-0.165,-5.52,0.75"), ("damping", "33.76")]),
+    // The error changes its sign.
+    ("pendulum/near-separatrix", &[("length", "0.102"), ("angle", "-0.0065")]),
+    // A model that leaves out what is not there.
+    ("linear-drag", &[("drag", "24.56"), ("gravity", "0,0,0"), ("v0", "0,0,0")]),
+];
+
+// Fails if: a kind of motion that once got a wrong verdict gets one again.
+#[test]
+fn what_the_net_has_found_is_judged_rightly() {
+    for (id, set) in FOUND {
+        let mut scene = scenes::by_id(id).expect("a scene");
+        for (name, value) in set {
+            scene.scene_mut().set(id, name, value).expect("an allowed value");
+        }
+        scene.scene().check().expect("a motion");
+        assert_eq!(verdicts(scene), Vec::<String>::new(), "{id} {set:?}");
+    }
+}
+
 fn draws() -> u64 {
-    std::env::var("NET_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(24)
+    std::env::var("NET_DRAWS").ok().and_then(|n| n.parse().ok()).unwrap_or(68)
 }
 
 // Fails if: a yardstick, an order or a constant of theory is right for the default parameters only.
-#[ignore = "the net still finds cases: a search to be run by hand, with NET_DRAWS for its size"]
 #[test]
 fn no_correct_method_gets_a_broken_claim_whatever_the_parameters() {
     use rayon::prelude::*;
@@ -203,12 +249,22 @@ fn rows_of_mutant(scene: &dyn AnyScene, right: &[Row], mutant: Mutant, stepper: 
     Some(all)
 }
 
-/// Whether the errors of the two differ by more than a hundredth of them, clear of rounding, in some quantity at the finest step.
+/// Whether theory tells the two apart: in some quantity of which it knows the constant, the errors at the finest step differ by more
+/// than a twentieth of them, clear of rounding, and the difference does not go away with the step. Where theory knows no constant, a fault
+/// that keeps the order is another method of that order; so is one that keeps the constant.
 fn differ(right: &[Row], wrong: &[Row]) -> bool {
-    let finest = right.iter().map(|row| row.steps).max();
-    right.iter().zip(wrong).filter(|(a, _)| Some(a.steps) == finest).any(|(a, b)| {
-        let (Some(x), Some(y), Some(rounding)) = (a.error_max, b.error_max, a.rounding_max) else { return true };
-        (x - y).abs() > 0.01 * x.max(y) && x.max(y) > 4096.0 * rounding.max(f64::EPSILON * a.scale)
+    let finest = right.iter().map(|row| row.steps).max().unwrap_or(0);
+    let difference = |quantity: Quantity, steps: u64| {
+        let is = |row: &&Row| row.quantity == quantity && row.steps == steps;
+        let (a, b) = (right.iter().find(is)?, wrong.iter().find(is)?);
+        let (x, y, rounding) = (a.error_max?, b.error_max?, a.rounding_max?);
+        let is_clear = x.max(y) > 4096.0 * rounding.max(f64::EPSILON * a.scale);
+        is_clear.then(|| (x - y).abs() / x.max(y))
+    };
+    let has_constant = |row: &&Row| row.steps == finest && row.leading_end.is_some();
+    right.iter().filter(has_constant).any(|row| {
+        let at = |steps: u64| difference(row.quantity, steps);
+        at(finest).zip(at(finest / 2)).is_some_and(|(fine, coarse)| fine > 0.05 && fine > 0.75 * coarse)
     })
 }
 
@@ -216,7 +272,6 @@ fn differ(right: &[Row], wrong: &[Row]) -> bool {
 const SEEN_IN_ROUNDING: [Mutant; 3] = [Mutant::AccumulatedTime, Mutant::SingleAccumulation, Mutant::NotNormalised];
 
 // Fails if: the yardstick of the verdicts has grown so long that a fault fits below it.
-#[ignore = "the net still finds cases: a search to be run by hand, with NET_DRAWS for its size"]
 #[test]
 fn no_built_in_mutant_stays_green_whatever_the_parameters() {
     use rayon::prelude::*;

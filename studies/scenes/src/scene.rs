@@ -71,6 +71,12 @@ pub trait Scene: Parameters + Any + Send + Sync {
         false
     }
 
+    /// By what factor the motion multiplies a rounding until `end_s`, where it is a steady one that is not stable.
+    fn amplification(&self, end_s: f64) -> f64 {
+        let _ = end_s;
+        1.0
+    }
+
     /// What theory says of a method's error in a quantity at the time `end_s`.
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         let _ = (quantity, end_s);

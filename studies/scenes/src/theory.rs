@@ -52,6 +52,8 @@ pub struct Theory {
     pub constant: Option<f64>,
     /// How far the constant may be off by the rounding of its formula.
     pub doubt: f64,
+    /// The step below which the constant of an envelope bounds the error, s: larger steps may move an event past the end.
+    pub below_h_s: f64,
     /// Where it comes from, or why it is not the method's own order.
     pub reason: &'static str,
 }
@@ -75,6 +77,7 @@ impl Theory {
             order: ExpectedOrder::Of(f64::from(method.order())),
             constant: None,
             doubt: 0.0,
+            below_h_s: f64::INFINITY,
             reason: "the method's order on a smooth problem",
         }
     }
@@ -94,7 +97,7 @@ impl Theory {
 
     /// No error but rounding.
     pub fn exact(reason: &'static str) -> Self {
-        Theory { order: ExpectedOrder::Exact, constant: None, doubt: 0.0, reason }
+        Theory { order: ExpectedOrder::Exact, constant: None, doubt: 0.0, below_h_s: f64::INFINITY, reason }
     }
 
     /// The usual order with a known error constant; zero means a higher order.

@@ -162,6 +162,8 @@ pub struct ObservedOrder {
     pub scale: f64,
     /// Order between the two finest steps whose errors are above rounding, or `None` where all are rounding.
     pub order: Option<f64>,
+    /// The same one halving earlier.
+    pub order_before: Option<f64>,
     /// The largest step from which on the error stays within a tenth of its value at the finest, s.
     pub plateau_h_s: Option<f64>,
     /// Operations of one step.
@@ -193,10 +195,8 @@ fn seen(sweep: &[&Row]) -> ObservedOrder {
     let finest = sweep.last().and_then(|row| row.error);
     let above: Vec<(f64, f64)> =
         sweep.iter().filter_map(|row| Some((row.h_s, row.error.filter(|e| *e > FLOOR)?))).collect();
-    let order = match above[..] {
-        [.., coarse, fine] => local_order(coarse, fine),
-        _ => None,
-    };
+    let order = above.last_chunk().and_then(|[coarse, fine]| local_order(*coarse, *fine));
+    let order_before = above.last_chunk().and_then(|[coarse, fine, _]| local_order(*coarse, *fine));
     let near = |row: &&&Row| finest.zip(row.error).is_some_and(|(f, e)| (e / f - 1.0).abs() <= 0.1);
     ObservedOrder {
         scene: first.scene.clone(),
@@ -208,6 +208,7 @@ fn seen(sweep: &[&Row]) -> ObservedOrder {
         full: None,
         scale: largest(sweep.iter().map(|row| row.error)).unwrap_or(f64::NAN),
         order,
+        order_before,
         plateau_h_s: sweep.iter().rev().take_while(near).last().map(|row| row.h_s),
         operations_a_step: first.operations.checked_div(first.steps).unwrap_or(0),
         evaluations_a_step: first.evaluations as f64 / first.steps as f64,
@@ -227,17 +228,16 @@ fn claim(seen: &ObservedOrder) -> Option<Claim> {
     let id = format!("{}.{}.{}", seen.scene, seen.model, seen.method).replace(' ', "-");
     let rounding = seen.finest.is_some_and(|error| (0.0..=FLOOR * seen.scale.max(1.0)).contains(&error));
     let (statement, theory, bound, evidence) = if seen.consistent {
-        let order =
-            if rounding { Evidence::Inside } else { Evidence::within(seen.order, [LEAST_ORDER, f64::INFINITY]) };
         let theory = "order 1 or more, or exact".to_owned();
-        ("converges to the full motion", theory, format!("order at least {LEAST_ORDER}"), order)
+        ("converges to the full motion", theory, format!("order at least {LEAST_ORDER}"), converges(seen, rounding))
     } else {
-        let order = if rounding { None } else { seen.order };
+        // A model without an error leaves nothing out of this motion.
+        let order = Evidence::near(seen.order, Some(0.0), LARGEST_ORDER);
         (
             "is inconsistent: its error does not fall with the step",
             "order 0".to_owned(),
             format!("|order| at most {LARGEST_ORDER}"),
-            Evidence::near(order, Some(0.0), LARGEST_ORDER),
+            if rounding && seen.order.is_none() { Evidence::Undecided } else { order },
         )
     };
     let texts = [
@@ -253,10 +253,27 @@ fn claim(seen: &ObservedOrder) -> Option<Claim> {
     Some(claim.on(base(&seen.scene)).by(&seen.method))
 }
 
+/// Whether the errors of a model fall with the step. They do not if the last two halvings hardly change them; between that and a whole
+/// order the steps are too long to say, or the error is about to change its sign.
+fn converges(seen: &ObservedOrder, rounding: bool) -> Evidence {
+    let is_flat = |order: Option<f64>| order.is_some_and(|order| order.abs() < FLAT);
+    match seen.order {
+        _ if rounding => Evidence::Inside,
+        Some(order) if order >= LEAST_ORDER => Evidence::Inside,
+        Some(order) if order.is_nan() => Evidence::Outside,
+        // So small an error may be rounding of a motion that goes far.
+        _ if seen.finest.is_some_and(|error| error <= HIDDEN) => Evidence::Undecided,
+        _ if is_flat(seen.order) && is_flat(seen.order_before) => Evidence::Outside,
+        _ => Evidence::Undecided,
+    }
+}
+
+/// An order below this is none.
+const FLAT: f64 = 0.2;
+
 /// Whether a wrong model is too little wrong to be seen beside rounding, or beside the error that the method makes on the full model.
 fn hides(seen: &ObservedOrder) -> bool {
-    let beside =
-        |e: f64| e > FLOOR && (e <= HIDDEN || seen.full.is_some_and(|full| full < e && e <= full / LARGEST_ORDER));
+    let beside = |e: f64| e <= HIDDEN || seen.full.is_some_and(|full| full < e && e <= full / LARGEST_ORDER);
     !seen.consistent && seen.finest.is_some_and(beside)
 }
 

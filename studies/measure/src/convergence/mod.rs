@@ -7,7 +7,7 @@ mod order_row;
 mod orders;
 mod rounding;
 
-pub use limit::{Approach, Limit, judge, limit};
+pub use limit::{Approach, Limit, RESOLVED, judge, limit};
 pub use order_row::{Measure, OrderRow};
 pub use orders::{orders, tolerance};
 
@@ -74,6 +74,9 @@ pub struct Row {
     pub theory_constant: Option<f64>,
     /// How far it may be off by the rounding of its formula.
     pub theory_doubt: f64,
+    /// The step below which the bound of an envelope holds, s; empty for no limit.
+    #[serde(default)]
+    pub theory_below_h_s: Option<f64>,
     /// The same limit by the equation of first variation, in double-double, for the methods whose local error it knows.
     pub leading_end: Option<f64>,
     /// That of error_max.
@@ -178,6 +181,10 @@ impl Job<'_> {
     }
 
     fn compare(&self, precision: Precision, run: &Trajectory, reference: &Trajectory) -> Vec<Row> {
+        let compared = self.known.truth.compare(self.scene, self.steps, run, reference);
+        let rate = compared.iter().find(|errors| errors.quantity == Quantity::AngularVelocity);
+        let turned = rate.map_or(1.0, |errors| (errors.scale * self.known.end_s).max(1.0));
+        let amplified = self.scene.scene().amplification(self.known.end_s);
         let row = |errors: Errors| {
             let theory = self.scene.scene().expected_error(self.method, errors.quantity, self.known.end_s);
             let mut known = self.known.leading.iter();
@@ -197,7 +204,12 @@ impl Job<'_> {
                 error_max: errors.max,
                 rounding_end: errors.rounding_end,
                 rounding_max: errors.rounding_max,
-                scale: errors.scale,
+                // What has no error but rounding is rounded as the angle is that the body has turned.
+                scale: if theory.order == ExpectedOrder::Exact || amplified > 1.0 {
+                    turned * amplified * errors.scale
+                } else {
+                    errors.scale
+                },
                 evaluations: run.evaluations,
                 theory_order: match theory.order {
                     ExpectedOrder::Exact => None,
@@ -206,11 +218,12 @@ impl Job<'_> {
                 theory_is_envelope: matches!(theory.order, ExpectedOrder::Envelope(_)),
                 theory_constant: theory.constant,
                 theory_doubt: theory.doubt,
+                theory_below_h_s: Some(theory.below_h_s).filter(|h| h.is_finite()),
                 leading_end: leading.map(|one| one.end),
                 leading_max: leading.map(|one| one.max),
                 leading_doubt: leading.map(|one| one.doubt),
             }
         };
-        self.known.truth.compare(self.scene, self.steps, run, reference).into_iter().map(row).collect()
+        compared.into_iter().map(row).collect()
     }
 }

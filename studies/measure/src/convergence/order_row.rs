@@ -77,6 +77,11 @@ pub struct OrderRow {
     pub finest_order: Option<f64>,
     /// Whether every error is rounding.
     pub is_rounding: bool,
+    /// Whether even the finest step is too long for the errors of a correct method to be small: phi (h / time scale)^p, where phi is
+    /// the length of the run in time scales, is above 0.03.
+    pub is_coarse: bool,
+    /// Whether the order between neighbours is too high and too low by turns: of errors of several motions, or methods.
+    pub is_erratic: bool,
     /// The longest step of the finest runs that failed, s.
     pub coarsest_failure_h_s: Option<f64>,
     /// Natural time scale of the scene, s.
@@ -91,6 +96,16 @@ pub struct OrderRow {
     pub tolerance: f64,
     /// The verdict in words.
     pub note: String,
+}
+
+impl OrderRow {
+    /// The limit of error / h^p by theory and how far it may be off: the scene's own constant, or that of the equation of first variation,
+    /// whichever is known better.
+    pub(super) fn theory_limit(&self) -> Option<(f64, f64)> {
+        let own = self.theory_constant.map(|constant| (constant, self.theory_doubt));
+        let varied = self.leading.zip(self.leading_doubt);
+        own.into_iter().chain(varied).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
 }
 
 /// The order over the finest four runs whose errors are clear of rounding.

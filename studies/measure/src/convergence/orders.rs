@@ -2,13 +2,13 @@
 
 use reports::{Claim, Table};
 
-use super::limit::{Approach, ROUNDING, judge, limit};
+use super::limit::{Approach, RESOLVED, ROUNDING, judge, limit};
 use super::order_row::{Measure, OrderRow, finest_order};
 use super::{HALVINGS, Row, envelope};
 use crate::claim::{Evidence, claim};
 use crate::error::Error;
 use crate::order;
-use crate::order::{Expected, Limits, Sample};
+use crate::order::{Expected, Limits, Sample, local_order};
 use crate::study::{Derived, short};
 use scenes::errors::CHECKPOINTS;
 use scenes::run::{Outcome, Precision, method_from_id};
@@ -70,8 +70,14 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     // Where an order is sought a run's rounding is not known beforehand; where there is no error but rounding, that of a whole run.
     let operations = if first.theory_order.is_none() { first.steps as f64 } else { 1.0 };
     let limits = Limits { rounding_unit: operations * unit, saturation: scale };
-    let seen = order::observe(&samples, expected, limits);
-    let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| samples[pick(w)].h_s);
+    // With steps beyond its stability limit a method multiplies roundings even of a motion that it has exactly.
+    let unstable = samples.iter().take_while(|s| s.h_s > first.time_scale_s).count();
+    let judged = match expected {
+        Expected::Exact if samples.len() - unstable >= 3 => &samples[unstable..],
+        _ => &samples[..],
+    };
+    let seen = order::observe(judged, expected, limits);
+    let step = |pick: fn((usize, usize)) -> usize| seen.window.map(|w| judged[pick(w)].h_s);
     let steps = |s: &Sample| (first.h_s * first.steps as f64) / s.h_s;
     let rounding = |s: &Sample| s.floor.max(ROUNDINGS * steps(s) * unit);
     let approach = if measure == Measure::End { Approach::Smooth } else { Approach::Largest };
@@ -114,6 +120,8 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         leading_doubt: first.leading_doubt,
         finest_order: finest_order(&samples, rounding),
         is_rounding: samples.iter().all(|s| s.error.is_some_and(|e| e <= rounding(s))),
+        is_coarse: is_coarse(first, samples.last().map_or(f64::INFINITY, |s| s.h_s)),
+        is_erratic: first.theory_order.is_some_and(|p| is_erratic(&samples, p, rounding)),
         coarsest_failure_h_s: failed.last().map(|s| s.h_s),
         time_scale_s: first.time_scale_s,
         floor: seen.floor,
@@ -122,6 +130,27 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
         tolerance,
         note: seen.note,
     }
+}
+
+/// What steps of this length make of a motion in steps and in radians, at most, that an order can be judged by.
+const COARSE: f64 = 0.03;
+
+fn is_coarse(first: &Row, finest_h_s: f64) -> bool {
+    let end_s = first.h_s * first.steps as f64;
+    let part = (finest_h_s / first.time_scale_s).powf(first.theory_order.unwrap_or(f64::INFINITY));
+    first.theory_order.is_some() && end_s / first.time_scale_s * part > COARSE
+}
+
+/// Turns in the finest runs from an order too high by one or more to one too low, or back, that no smooth motion has: an error that
+/// changes its sign has one.
+const TURNS: usize = 3;
+
+fn is_erratic(samples: &[Sample], p: f64, rounding: impl Fn(&Sample) -> f64) -> bool {
+    let clear: Vec<&Sample> = samples.iter().filter(|s| s.error.is_some_and(|e| e > rounding(s))).collect();
+    let off = |w: &[&Sample]| Some(local_order((w[0].h_s, w[0].error?), (w[1].h_s, w[1].error?))? - p);
+    let all: Vec<f64> = clear.windows(2).filter_map(off).collect();
+    let turns = all.windows(2).rev().take_while(|w| w[0] * w[1] < 0.0 && w[0].abs().min(w[1].abs()) > 1.0);
+    turns.count() >= TURNS
 }
 
 /// A step rounds a few times, and the motion carries it along.
@@ -219,7 +248,12 @@ fn is_promised(method: &str, scene: &str, said: Evidence) -> bool {
 fn said(o: &OrderRow, judged: &[&OrderRow]) -> Evidence {
     match judge(o) {
         Evidence::Inside => Evidence::Inside,
-        _ if o.measure == Measure::End && o.leading.is_none() && o.theory_order.is_some() && !o.theory_is_envelope => {
+        _ if o.measure == Measure::End
+            && !o.is_erratic
+            && is_unknown(o)
+            && o.theory_order.is_some()
+            && !o.theory_is_envelope =>
+        {
             let largest = |x: &&&OrderRow| x.quantity == o.quantity && x.measure == Measure::Max;
             judged.iter().find(largest).map_or(Evidence::Undecided, |x| judge(x))
         }
@@ -227,9 +261,17 @@ fn said(o: &OrderRow, judged: &[&OrderRow]) -> Evidence {
     }
 }
 
+/// Whether theory does not know the limit, or only that it is small.
+fn is_unknown(o: &OrderRow) -> bool {
+    o.theory_limit().is_none_or(|(limit, doubt)| doubt > RESOLVED * limit)
+}
+
+/// A constant below this part of the ratio that is seen is zero.
+const VANISHES: f64 = 1e-9;
+
 /// Whether theory knows that the leading term is zero, or too small to be seen.
 fn vanishes(o: &OrderRow) -> bool {
-    o.leading.zip(o.leading_doubt).is_some_and(|(c, doubt)| c + doubt <= 1e-9 * o.coarse_constant)
+    o.leading.zip(o.leading_doubt).is_some_and(|(c, doubt)| c + doubt <= VANISHES * o.fine_constant)
 }
 
 /// The largest error of a run has no envelope where a velocity jumps: beside a bounce that is seen late the velocity is wrong by
@@ -249,7 +291,14 @@ fn constant_claim(o: &OrderRow) -> Option<Claim> {
         format!("+- {bound:.1e}, what the extrapolation may leave"),
     ];
     // Too few runs, too coarse ones, or errors at the floor have no window to extrapolate from.
-    let evidence = o.constant.map_or(Evidence::Undecided, |x| Evidence::near(Some(x.abs()), Some(theory), bound));
+    // So are those of which the extrapolation leaves too much: a part of the constant, of one that vanishes a part of what is seen.
+    let is_zero = theory <= VANISHES * o.fine_constant;
+    let size = |x: &f64| if is_zero { o.fine_constant } else { theory.max(x.abs()) };
+    let is_resolved = |x: &f64| !o.is_coarse && bound <= RESOLVED * size(x);
+    let evidence = match o.constant.filter(is_resolved) {
+        _ if o.is_rounding && theory == 0.0 => Evidence::Inside,
+        resolved => resolved.map_or(Evidence::Undecided, |x| Evidence::near(Some(x.abs()), Some(theory), bound)),
+    };
     let id = format!("{}.{}.{}.constant", o.scene, o.method, o.quantity.id());
     Some(claim("convergence", &id, texts, [evidence]).on(&o.scene).by(&o.method))
 }

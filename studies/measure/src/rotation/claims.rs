@@ -64,7 +64,7 @@ fn order_claim(id: &str, expected: Option<f64>, seen: &[&ObservedOrder]) -> Clai
         measured.collect::<Vec<_>>().join("; "),
         match expected {
             Some(_) => format!("extrapolated order within {ORDER_TOLERANCE}"),
-            None => "at most 1e-12 rad".to_owned(),
+            None => "at most 1e-12 of the angle turned, and of 1 rad".to_owned(),
         },
     ];
     let evidence = seen.iter().map(|s| s.agrees.map_or(Evidence::Undecided, Evidence::is));

@@ -6,12 +6,13 @@ use integrator::rigid_body::{AttitudeUpdate, Formulation};
 use integrator::{Real, Single};
 
 use super::row::{Experiment, Row};
-use crate::convergence::{Approach, limit};
+use crate::convergence::{Approach, RESOLVED, limit};
 use crate::order::{Sample, local_order};
 use crate::study::{Selection, distinct};
 use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion, ErasedPlace};
+use scenes::errors::ExactSamples;
 use scenes::observation::{Observation, Quantity};
 use scenes::run::{Outcome, Precision, Run};
 use scenes::scheme::{Rule, Scheme};
@@ -41,12 +42,19 @@ struct Known {
     leading: Vec<Leading>,
     /// |J (omega x I omega)| T^2 / 2 at most: by how much a body that lacks the term is turned wrongly, rad.
     without: f64,
+    /// By how much a body turns at most, rad, and at least 1; times what an unstable motion makes of a rounding.
+    turned: f64,
 }
 
 impl Known {
     fn of(scene: &dyn AnyScene, end_s: f64) -> Self {
         let exact = scene.exact(fx128::lit(end_s));
-        Known { end_s, exact, leading: scene.leading(end_s), without: 0.5 * gyroscopic(scene, end_s) * end_s * end_s }
+        let samples = ExactSamples::of(scene, end_s);
+        let rates = samples.samples().iter().map(|seen| seen.scale(Quantity::AngularVelocity));
+        let amplified = scene.scene().amplification(end_s);
+        let turned = (rates.fold(0.0, f64::max) * end_s).max(1.0) * amplified;
+        let without = 0.5 * gyroscopic(scene, end_s) * end_s * end_s;
+        Known { end_s, exact, leading: scene.leading(end_s), without, turned }
     }
 
     /// lim error / h^p of theory: of what stores the world's angular velocity, and of semi-implicit Euler in either frame.
@@ -104,7 +112,11 @@ fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Ve
             } else {
                 known.constant(scheme, quantity).map(|c| c.end * h_s.powf(order))
             },
-            tolerance: known.constant(scheme, quantity).map(|c| c.doubt * h_s.powf(order)),
+            tolerance: if exact {
+                Some(EXACT * known.turned)
+            } else {
+                known.constant(scheme, quantity).map(|c| c.doubt * h_s.powf(order))
+            },
             theory_order: (!exact).then_some(order),
             ..row.measured(quantity.id(), quantity.unit(), error(quantity))
         })
@@ -141,6 +153,9 @@ pub struct ObservedOrder {
 /// Errors below this are rounding: 2^10 steps of a few units in the last place each, and a thousandth of the smallest error used.
 const FLOOR: f64 = 65_536.0 * <f64 as Single>::EPSILON;
 
+/// Errors this many times above it show an order: what rounding adds to it is then small, also where a motion multiplies it.
+const CLEAR: f64 = 8.0;
+
 /// What every sweep among the rows shows.
 pub fn orders(rows: &[Row]) -> Vec<ObservedOrder> {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.experiment == Experiment::Error).collect();
@@ -152,7 +167,7 @@ pub fn orders(rows: &[Row]) -> Vec<ObservedOrder> {
 fn seen(sweep: &[&Row]) -> ObservedOrder {
     let first = sweep[0];
     let points: Vec<(f64, f64)> = sweep.iter().filter_map(|row| Some((row.h_s, row.value?))).collect();
-    let above: Vec<(f64, f64)> = points.iter().copied().filter(|(_, e)| *e > FLOOR).collect();
+    let above: Vec<(f64, f64)> = points.iter().copied().filter(|(_, e)| *e > CLEAR * FLOOR).collect();
     let local: Vec<f64> = above.windows(2).filter_map(|w| local_order(w[0], w[1])).collect();
     // p(h) = p + c h: halving h halves what is wrong with it.
     let order = match local[..] {
@@ -188,10 +203,12 @@ const UNSETTLED: f64 = 0.3;
 fn agrees(sweep: &[&Row], extrapolated: Option<(f64, f64)>, points: &[(f64, f64)]) -> Option<bool> {
     let (order, doubt) = (extrapolated.map(|o| o.0), extrapolated.map_or(0.0, |o| o.1));
     let first = sweep[0];
-    let finished = sweep.iter().all(|row| row.outcome == Outcome::Finished);
+    // A run that failed with a long step says nothing of shorter ones.
+    let finished = sweep.iter().rev().take(3).all(|row| row.outcome == Outcome::Finished);
     let finest = points.last().map(|p| p.1);
     let Some(p) = first.theory_order else {
-        return Some(finished && finest.is_some_and(|error| error <= EXACT));
+        let allowed = first.tolerance.unwrap_or(EXACT);
+        return Some(finished && finest.is_some_and(|error| error <= allowed));
     };
     if !finished || points.len() < 3 {
         return if first.outcome == Outcome::Finished { Some(false) } else { None };
@@ -200,7 +217,8 @@ fn agrees(sweep: &[&Row], extrapolated: Option<(f64, f64)>, points: &[(f64, f64)
     if p == 0.0 {
         // A model that is hardly wrong is seen only below the errors of its method.
         let is_seen = first.theory.zip(finest).is_some_and(|(without, e)| without.min(1.0) > 16.0 * e.max(FLOOR));
-        return if near { Some(true) } else { is_seen.then_some(false) };
+        let falls = order.is_some_and(|q| q >= HALF) && doubt <= UNSETTLED;
+        return if near { Some(true) } else { (is_seen && falls).then_some(false) };
     }
     if points.iter().all(|(_, e)| *e <= FLOOR) {
         return Some(true);
@@ -209,12 +227,34 @@ fn agrees(sweep: &[&Row], extrapolated: Option<(f64, f64)>, points: &[(f64, f64)
     let constant = sweep.last().and_then(|row| Some(row.theory? / row.h_s.powf(p)));
     let samples: Vec<Sample> = points.iter().map(|&(h_s, e)| Sample { h_s, error: Some(e), floor: 0.0 }).collect();
     let limit = limit(&samples, p, Approach::Smooth, |_| FLOOR / 16.0);
+    // A body that points anywhere is too far off for its errors to say anything.
+    if finest.is_none_or(|error| error > SMALL_ANGLE) {
+        return None;
+    }
     match (constant, limit) {
         (Some(constant), Some(limit)) => {
-            let right = (limit.value.abs() - constant).abs() <= limit.bound + doubted + 1e-9 * constant;
-            Some(right)
+            let allowed = limit.bound + doubted + 1e-9 * constant;
+            let resolved = allowed <= RESOLVED * constant.max(limit.value.abs());
+            let right = (limit.value.abs() - constant).abs() <= allowed;
+            // A next term that outweighs the first hides it.
+            let is_in_its_limit = order.is_some_and(|q| (q - p).abs() < HALF);
+            if right || (resolved && is_in_its_limit) { Some(right) } else { None }
         }
-        // Local orders that differ by so much are none.
-        _ => order.filter(|_| doubt <= UNSETTLED).map(|q| q >= p - ORDER_TOLERANCE),
+        // Local orders that differ by so much are none. A lower order is lower by one, in three pairs of runs; what is nearer has
+        // not arrived.
+        _ => {
+            let is_lower = |w: &[(f64, f64)]| local_order(w[0], w[1]).is_some_and(|order| order <= p - HALF);
+            let lower = points.windows(2).rev().take(3).all(is_lower);
+            match order.filter(|_| doubt <= UNSETTLED) {
+                Some(q) if q >= p - ORDER_TOLERANCE => Some(true),
+                Some(_) if lower => Some(false),
+                _ => None,
+            }
+        }
     }
 }
+
+/// The largest error of an attitude that an order is read from, rad.
+const SMALL_ANGLE: f64 = 0.1;
+/// Half an order: a sweep that is farther off its order is not in its limit, or has another order.
+const HALF: f64 = 0.5;

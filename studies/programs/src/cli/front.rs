@@ -110,9 +110,7 @@ pub fn help() -> String {
             text += &format!("  {:<12} {}\n", command.name, command.about);
         }
     }
-    text + &format!(
-        "\nWithout a command, and with options alone, it runs the report. '{NAME} COMMAND --help' shows the options of a command.\n"
-    )
+    text + &format!("\nWithout a command it runs the report. '{NAME} COMMAND --help' shows the options of a command.\n")
 }
 
 /// Runs the program that the first argument names.

@@ -197,6 +197,25 @@ impl BouncingBall {
         ([none[0], none[1] - 0.5 * lag * g], each)
     }
 
+    /// The step with which a ball that is as late as it can be still bounces as often until the horizon, s: half of the time from
+    /// the horizon to the nearest bounce, or of the shortest flight, over the lateness in steps.
+    fn envelope_below_s(&self, lag: f64, end_s: f64) -> f64 {
+        let e = self.restitution;
+        let times = self.nonsmooth_times_s(end_s);
+        let flight = 2.0 * self.impact_speed().to_f64() / self.gravity;
+        let next = times.last().map_or(f64::INFINITY, |last| last + flight * e.powi(times.len() as i32));
+        let flights = times.windows(2).map(|w| w[1] - w[0]);
+        let shortest = flights.fold((next - end_s).min(end_s - times.last().unwrap_or(&0.0)), f64::min);
+        // As in `first_order`, each bounce at its worst.
+        let (mut late, mut slow) =
+            (0.5 * lag.abs() * (1.0 + (self.v0 / self.impact_speed().to_f64()).abs()), lag.abs());
+        for _ in &times {
+            late += 1.0 + 1.0 / e + 2.0 * slow;
+            slow = e * slow + 1.0 / e - e + lag.abs();
+        }
+        0.5 * shortest / late
+    }
+
     /// The largest |error| / h over all phases of the bounces in their steps.
     fn envelope(&self, lag: f64, end_s: f64) -> [f64; 2] {
         let (none, each) = self.first_order(lag, end_s);
@@ -338,6 +357,7 @@ impl Scene for BouncingBall {
         Theory {
             order: ExpectedOrder::Envelope(1.0),
             doubt: 0.0,
+            below_h_s: self.envelope_below_s(lag(method), end_s),
             constant: Some(if quantity == Quantity::Position { x } else { v }),
             reason: "a bounce is seen up to h late and the ball is delayed by twice that: at most C h, with a factor that \
                      depends on where in its step each bounce falls",

@@ -92,6 +92,10 @@ impl Scene for BoxTumbling {
         answerable::range("box-tumbling", self, &seen, end_s)
     }
 
+    fn amplification(&self, end_s: f64) -> f64 {
+        rigid::free_amplification(self.inertia, self.omega, end_s)
+    }
+
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::account_of_flight(self.mass, self.inertia, lit(self.gravity), seen)
             .into_iter()

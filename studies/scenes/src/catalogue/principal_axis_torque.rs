@@ -135,6 +135,11 @@ impl Scene for PrincipalAxisTorque {
         rigid::account_less_torque(self.inertia, self.inertia[self.index()], torque, omega, t, seen)
     }
 
+    fn amplification(&self, end_s: f64) -> f64 {
+        let gained = self.torque / self.inertia[self.index()] * end_s;
+        rigid::amplification(self.inertia, self.index(), (self.omega.abs() + 0.5 * gained.abs()) * end_s)
+    }
+
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         let gained = self.torque / self.inertia[self.index()] * end_s;
         match (method, quantity) {

@@ -218,6 +218,7 @@ impl Scene for QuadraticDrag {
                 Theory {
                     order: ExpectedOrder::Envelope(3.0),
                     doubt: 0.0,
+                    below_h_s: since / 32.0,
                     constant: Some(if quantity == Quantity::Position { x } else { v }),
                     reason: "v |v| has a kink at the apex: order 3, with a factor that depends on where in its step the apex \
                              falls; no arithmetic helps, and local orders scatter",

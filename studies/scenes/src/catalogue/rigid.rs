@@ -46,6 +46,25 @@ pub(crate) fn account_less_torque(
     entries
 }
 
+/// By how much a disturbance of a spin about a principal axis grows while the body turns by phi: as 1 + phi, and about the axis of the
+/// intermediate moment as exp(k phi) besides, k^2 = (I - I_a) (I_b - I) / (I_a I_b) with the moments I_a and I_b of the other axes. A
+/// momentum turns into an angular velocity with the moments' ratio.
+pub(crate) fn amplification(inertia: [f64; 3], axis: usize, turned: f64) -> f64 {
+    let [own, a, b] = [0, 1, 2].map(|i| inertia[(axis + i) % 3]);
+    let rate = ((own - a) * (b - own) / (a * b)).max(0.0).sqrt();
+    let [least, largest] = [own.min(a).min(b), own.max(a).max(b)];
+    (1.0 + turned) * (rate * turned).exp() * largest / least
+}
+
+/// The same for a free body: 1 unless it spins about one axis alone.
+pub(crate) fn free_amplification(inertia: [f64; 3], omega: [f64; 3], end_s: f64) -> f64 {
+    let along: Vec<usize> = (0..3).filter(|&i| omega[i] != 0.0).collect();
+    match along[..] {
+        [axis] => amplification(inertia, axis, omega[axis].abs() * end_s),
+        _ => 1.0,
+    }
+}
+
 /// What theory says where omega_world' is constant: omega is exact, and an Euler method that drifts with the omega of one end
 /// of the step is wrong by -+ (tau / I) h / 2 in it. Seen from the body that adds up to h / 2 times the integral of
 /// R^T tau / I = omega_body', so that the angle is off by h / 2 times `gained` = |omega_body(T) - omega_body(0)|.

@@ -75,6 +75,10 @@ impl Scene for TorqueFreeSpin {
         rigid::check_free("torque-free-spin", &self.info(), &self.omega)
     }
 
+    fn amplification(&self, end_s: f64) -> f64 {
+        rigid::free_amplification(self.inertia, self.omega, end_s)
+    }
+
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         rigid::invariants(self.inertia, seen, fx128::ZERO, true, true)
     }
