@@ -14,6 +14,7 @@ fn rows() -> &'static [Row] {
         Adequacy::measure(&Selection {
             scenes: scenes::all(),
             methods: integrator::methods::MethodId::ALL.to_vec(),
+            schemes: Vec::new(),
             precisions: Precision::ALL.to_vec(),
             steps: Vec::new(),
             end_s: None,

@@ -16,6 +16,7 @@ fn selection(id: &str) -> Selection {
     Selection {
         scenes: vec![scenes::by_id(id).expect("a scene of the catalogue")],
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
         end_s: None,
@@ -35,7 +36,7 @@ fn an_advised_step_keeps_the_error_and_twice_the_step_does_not() {
             let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: 2 };
             let mut found = 0;
             for candidate in
-                candidates(scene.as_ref(), &[MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4])
+                candidates(scene.as_ref(), &[MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4], &[])
             {
                 let Search::Found(tried) = search(&need, candidate, Precision::F64) else { continue };
                 found += 1;
@@ -59,7 +60,7 @@ fn rounding_and_too_many_steps_are_told_apart() {
     let truth = ExactSamples::new(scene.as_ref(), 2.75, 64).at_every_step(Of::default(), 1e-9);
     let need = |error| Need { scene: scene.as_ref(), truth: &truth, error, end_s: 2.75, unit: 2 };
     let ask = |error, method, precision| {
-        let candidate = candidates(scene.as_ref(), &[method])[0];
+        let candidate = candidates(scene.as_ref(), &[method], &[])[0];
         search(&need(error), candidate, precision)
     };
     // f32 has seven digits.

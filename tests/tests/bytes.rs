@@ -19,6 +19,7 @@ fn rows<S: Study>(scene: &str) -> String {
     let selection = Selection {
         scenes: vec![scenes::by_id(scene).expect("a scene")],
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
         end_s: None,

@@ -14,6 +14,7 @@ fn everything(precisions: &[Precision]) -> Selection {
     Selection {
         scenes: scenes::all(),
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: precisions.to_vec(),
         steps: Vec::new(),
         end_s: None,

@@ -22,6 +22,7 @@ fn selection() -> Selection {
     Selection {
         scenes: ids.map(|id| scenes::by_id(id).expect("a scene")).into(),
         methods: integrator::methods::MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
         end_s: None,

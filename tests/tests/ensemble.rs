@@ -173,6 +173,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
     Selection {
         scenes: vec![scenes::by_id(id).expect("a scene")],
         methods: methods.to_vec(),
+        schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: steps.to_vec(),
         end_s: None,

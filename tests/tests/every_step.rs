@@ -104,7 +104,7 @@ fn advice_on_random_parameters_agrees_with_brute_force() {
             }
             let scene = scene.as_ref();
             let end_s = scene.scene().info().time_scale_s * random.log(2.0, 200.0);
-            let candidate = candidates(scene, &methods)[i % methods.len()];
+            let candidate = candidates(scene, &methods, &[])[i % methods.len()];
             let precision = if random.uniform() < 0.25 { Precision::F32 } else { Precision::F64 };
             let sampled = ExactSamples::new(scene, end_s, 64);
             let order = f64::from(candidate.scheme.order());
@@ -147,6 +147,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
     Selection {
         scenes: vec![scene],
         methods: vec![method],
+        schemes: Vec::new(),
         precisions: vec![precision],
         steps: Vec::new(),
         end_s: None,
@@ -184,7 +185,7 @@ fn an_error_between_the_samples_counts() {
 }
 
 fn measured_rk4(spring: &dyn AnyScene, steps: u64) -> f64 {
-    brute(spring, candidates(spring, &[MethodId::Rk4])[0], Precision::F64, 60.0, steps)
+    brute(spring, candidates(spring, &[MethodId::Rk4], &[])[0], Precision::F64, 60.0, steps)
 }
 
 /// a = mu = 1, of eccentricity 0.9: the error is made at the pericentre, and largest beside it.
@@ -195,7 +196,7 @@ const ECCENTRIC: [(&str, &str); 3] = [("mu", "1"), ("semi_major", "1"), ("eccent
 fn the_error_at_a_pericentre_counts() {
     let orbit = scene("kepler", &ECCENTRIC);
     let end_s = 2.0 * std::f64::consts::TAU;
-    let candidate = candidates(orbit.as_ref(), &[MethodId::Rk4])[0];
+    let candidate = candidates(orbit.as_ref(), &[MethodId::Rk4], &[])[0];
     for error in [1e-3, 1e-6] {
         let truth = ExactSamples::new(orbit.as_ref(), end_s, 64).at_every_step(Of::Configuration, error);
         let need = Need { scene: orbit.as_ref(), truth: &truth, error, end_s, unit: 2 };
@@ -216,7 +217,7 @@ fn a_lucky_coarse_run_is_no_rounding_floor() {
     let of = Of::Invariant(Invariant::Energy);
     let truth = ExactSamples::new(top.as_ref(), end_s, 64).at_every_step(of, 0.05);
     let need = Need { scene: top.as_ref(), truth: &truth, error: 0.05, end_s, unit: 2 };
-    for candidate in candidates(top.as_ref(), &[MethodId::ImplicitEuler]) {
+    for candidate in candidates(top.as_ref(), &[MethodId::ImplicitEuler], &[]) {
         let found = search(&need, candidate, Precision::F64);
         assert!(matches!(found, Search::Found(_)), "{}: {found:?}", candidate.id());
     }
@@ -228,6 +229,7 @@ fn a_budget_is_a_bound() {
     for budget in [2.0, 5.0, 20.0] {
         let chosen = Selection {
             methods: vec![MethodId::SemiImplicitEuler, MethodId::VelocityVerlet, MethodId::Rk4],
+            schemes: Vec::new(),
             precisions: vec![Precision::F32, Precision::F64],
             ..selection(scene("pendulum", &[]), MethodId::Rk4, Precision::F64)
         };
@@ -257,7 +259,7 @@ fn what_has_no_error_is_refused() {
 fn an_error_of_another_quantity_is_that_of_the_quantity() {
     let spring = scene("oscillator", &[]);
     let (end_s, steps) = (11.0, 2000);
-    let candidate = candidates(spring.as_ref(), &[MethodId::ExplicitEuler])[0];
+    let candidate = candidates(spring.as_ref(), &[MethodId::ExplicitEuler], &[])[0];
     let energy = |seen: &Observation| {
         let entries = spring.scene().invariants(fx128::ZERO, seen);
         entries.iter().find(|entry| entry.invariant == Invariant::Energy).expect("kept").value[0]

@@ -138,6 +138,7 @@ fn selection(scene: Box<dyn AnyScene>, precision: Precision) -> Selection {
     Selection {
         scenes: vec![scene],
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: vec![precision],
         steps: (0..=8).map(|k| coarsest << k).collect(),
         end_s: None,

@@ -8,6 +8,7 @@ use reports::{Claim, Verdict};
 use scenes::observation::Quantity;
 use scenes::run::Precision;
 use scenes::scheme::Scheme;
+use verification::programs::{program, run, text};
 
 const ALL: &[MethodId] = MethodId::ALL;
 
@@ -20,6 +21,7 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
     Selection {
         scenes: vec![scene],
         methods: methods.to_vec(),
+        schemes: Vec::new(),
         precisions: vec![Precision::DoubleDouble],
         steps: Vec::new(),
         end_s: None,
@@ -138,4 +140,30 @@ fn a_slow_body_is_not_at_the_floor() {
     let seen = converges("torque-free-spin", &set, &[MethodId::Rk4]);
     let order = largest(&seen, MethodId::Rk4, Quantity::Attitude).order.expect("a slope");
     assert!((order - 4.0).abs() < 0.2, "{order}");
+}
+
+// Fails if: a step for rigid bodies cannot be chosen by its name, others come with it, or a study that cannot take it ignores it.
+#[test]
+fn steps_for_rigid_bodies_are_chosen_by_their_name() {
+    let scene = ["--scene", "torque-free-spin", "--method", "restored-momentum", "--method", "rk4/world-momentum"];
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let output = run("rotation", &[&scene[..], &["--quick"]].concat(), directory.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let rows = std::fs::read_to_string(directory.path().join("rotation.csv")).expect("written");
+    let mut schemes: Vec<&str> = rows
+        .lines()
+        .filter(|row| row.starts_with("error,") || row.starts_with("step-law,"))
+        .filter_map(|row| row.split(',').nth(2))
+        .collect();
+    schemes.sort_unstable();
+    schemes.dedup();
+    assert_eq!(schemes, ["restored-momentum", "rk4/world-momentum"]);
+    let advice = program("tradeoff").args(scene).args(["--error", "1e-2"]).output().expect("the binary was built");
+    assert_eq!(advice.status.code(), Some(0), "{}", text(&advice.stderr));
+    for study in ["convergence", "drift", "adequacy", "stability"] {
+        let refused = program(study).args(scene).output().expect("the binary was built");
+        let message = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{study}: {message}");
+        assert!(message.contains("restored-momentum moves rigid bodies only"), "{study}: {message}");
+    }
 }

@@ -201,6 +201,7 @@ fn every_claim_of_a_quick_study_holds() {
     let selection = Selection {
         scenes: scenes::all(),
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
         end_s: None,

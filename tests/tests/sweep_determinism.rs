@@ -15,6 +15,7 @@ fn selection() -> Selection {
     Selection {
         scenes: ["oscillator", "torque-free-spin"].map(|id| scenes::by_id(id).expect("a scene")).into(),
         methods: vec![MethodId::SemiImplicitEuler, MethodId::Rk4, MethodId::ImplicitMidpoint],
+        schemes: Vec::new(),
         precisions: vec![Precision::F32, Precision::F64, Precision::DoubleDouble],
         steps: vec![64, 100, 32],
         end_s: None,

@@ -25,6 +25,7 @@ fn selection(ids: &[&str]) -> Selection {
     Selection {
         scenes: ids.iter().map(|id| scenes::by_id(id).expect("a scene of the catalogue")).collect(),
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
         end_s: None,
@@ -254,7 +255,7 @@ fn storages_have_the_same_error_with_semi_implicit_euler_and_no_other_method() {
 #[test]
 fn every_candidate_is_found_by_its_name() {
     for id in ["pendulum", "tennis-racket"] {
-        for candidate in candidates(scenes::by_id(id).expect("a scene").as_ref(), MethodId::ALL) {
+        for candidate in candidates(scenes::by_id(id).expect("a scene").as_ref(), MethodId::ALL, &[]) {
             assert_eq!(Candidate::from_id(&candidate.id()), Some(candidate));
         }
     }

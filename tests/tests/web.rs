@@ -185,6 +185,7 @@ fn selection() -> Selection {
     Selection {
         scenes: ["pendulum", "bouncing-ball", "torque-free-spin"].map(|id| scenes::by_id(id).expect("a scene")).into(),
         methods: MethodId::ALL.to_vec(),
+        schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         // With 2 steps some of the implicit ones are not solved.
         steps: vec![2, 64],

@@ -9,6 +9,7 @@ use crate::sweep::Progress;
 use integrator::methods::MethodId;
 use scenes::any::AnyScene;
 use scenes::run::Precision;
+use scenes::scheme::Scheme;
 
 /// What to look at, for every study.
 pub struct Selection {
@@ -16,6 +17,8 @@ pub struct Selection {
     pub scenes: Vec<Box<dyn AnyScene>>,
     /// The methods.
     pub methods: Vec<MethodId>,
+    /// Schemes for rigid bodies that were chosen by their own name, as `restored-momentum` or `rk4/world-momentum`.
+    pub schemes: Vec<Scheme>,
     /// The precisions.
     pub precisions: Vec<Precision>,
     /// The numbers of steps of a sweep, in increasing order; empty for the halvings that each scene suggests.
@@ -90,6 +93,9 @@ pub trait Study {
     /// The keys of a plan that it heeds besides `scene`, `method`, `set` and `quick`. A plan of this study alone that gives another
     /// is refused.
     const HEEDS: &'static [&'static str];
+
+    /// Whether it runs schemes that exist for rigid bodies only.
+    const TAKES_SCHEMES: bool = false;
 
     /// The kinds of its rows, if there are several: each kind has a file of its own.
     const KINDS: &'static [Kind] = &[];

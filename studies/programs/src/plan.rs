@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use clap::Args;
-use integrator::methods::MethodId;
+use integrator::methods::{MethodId, RigidStep};
 use serde::{Deserialize, Serialize};
 
 use measure::error::Error;
 use scenes::any::AnyScene;
 use scenes::run::{Precision, method_from_id};
+use scenes::scheme::Scheme;
 
 use measure::study::{Draws, Selection, distinct};
 use measure::sweep::Progress;
@@ -23,7 +24,7 @@ pub struct Plan {
     #[arg(long, value_name = "ID")]
     pub scene: Vec<String>,
 
-    /// Method to look at; may be given again [default: all]
+    /// Method, or scheme for rigid bodies, to look at; may be given again [default: all]
     #[arg(long, value_name = "ID")]
     pub method: Vec<String>,
 
@@ -228,10 +229,12 @@ impl Plan {
             distinct(&self.scene).into_iter().map(|id| scenes::by_id(id)).collect::<Result<_, _>>()?
         };
         self.apply_settings(&mut chosen)?;
+        let (methods, schemes) = self.rules()?;
         let end_s = self.end_s(&chosen)?;
         Ok(Selection {
             scenes: chosen,
-            methods: named(&self.method, method_from_id, MethodId::ALL)?,
+            methods,
+            schemes,
             precisions: named(&self.precision, Precision::from_id, &Precision::ALL)?,
             steps: {
                 let mut steps = distinct(self.steps.iter().copied());
@@ -246,6 +249,26 @@ impl Plan {
             },
             progress: Progress::silent(),
         })
+    }
+
+    /// The methods, and the schemes for rigid bodies that are chosen by their own name.
+    fn rules(&self) -> Result<(Vec<MethodId>, Vec<Scheme>), Error> {
+        if self.method.is_empty() {
+            return Ok((MethodId::ALL.to_vec(), Vec::new()));
+        }
+        let (mut methods, mut schemes) = (Vec::new(), Vec::new());
+        for name in distinct(&self.method) {
+            match (method_from_id(name), Scheme::from_id(name)) {
+                (Ok(method), _) => methods.push(method),
+                (Err(_), Some(scheme)) => schemes.push(scheme),
+                (Err(_), None) => {
+                    let general = MethodId::ALL.iter().map(|method| method.id().to_owned());
+                    let rigid = RigidStep::ALL.iter().map(|step| step.id().to_owned());
+                    return Err(Error::unknown("method", name, general.chain(rigid)));
+                }
+            }
+        }
+        Ok((methods, schemes))
     }
 
     /// The length of the runs, where it is given.

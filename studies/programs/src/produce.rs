@@ -133,6 +133,19 @@ impl Source {
     }
 }
 
+/// Refuses a scheme for rigid bodies where the study has no use for one.
+///
+/// # Errors
+/// The scheme, with the studies that take it.
+pub(crate) fn refuse_schemes<S: Study>(selection: &Selection) -> Result<(), Error> {
+    let refused = selection.schemes.first().filter(|_| !S::TAKES_SCHEMES);
+    refused.map_or(Ok(()), |scheme| {
+        let (id, study) = (scheme.id(), S::ID);
+        let message = format!("{id} moves rigid bodies only; `rotation` and `tradeoff` take it, `{study}` does not");
+        Err(Error::plan("--method", message))
+    })
+}
+
 /// The command that makes a figure again: the study, the figure's scene and the plan's flags.
 fn command(study: &str, figure: &Figure, plan: &Plan) -> String {
     let scene = figure.scene.as_deref();
@@ -207,6 +220,9 @@ fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
 pub fn study<S: Study>(common: &Common) -> Result<(Judged, Section), Error> {
     common.plan.heeded(S::ID, S::HEEDS)?;
     let mut source = Source::of(common)?;
+    if let Rows::Measured(selection) = &source.rows {
+        refuse_schemes::<S>(selection)?;
+    }
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, section } = source.product::<S>()?;
     let manifest = source.manifest.sealed(&files)?;

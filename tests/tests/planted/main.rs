@@ -135,6 +135,7 @@ impl Baseline {
         let selection = Selection {
             scenes: vec![by_id()],
             methods: vec![method],
+            schemes: Vec::new(),
             precisions: Precision::ALL.to_vec(),
             steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
             end_s: None,

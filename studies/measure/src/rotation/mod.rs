@@ -30,6 +30,7 @@ impl Study for Rotation {
     type Row = Row;
     const ID: &'static str = "rotation";
     const HEEDS: &'static [&'static str] = &["steps", "for"];
+    const TAKES_SCHEMES: bool = true;
     const ABOUT: &'static str =
         "Compares every scheme in use for rigid bodies: error, order, drift, nutation, where the body ends up";
     const EXAMPLES: &'static str = "rotation --scene torque-free-spin --scene heavy-top
@@ -69,11 +70,12 @@ impl Study for Rotation {
     }
 }
 
-/// A method that was not chosen is left out; steps that exist for rigid bodies only are always compared.
+/// A method that was not chosen is left out; steps that exist for rigid bodies only are compared unless schemes are chosen by name.
 fn asked_for(selection: &Selection, scheme: Scheme) -> bool {
     match scheme.rule {
+        _ if selection.schemes.contains(&scheme) => true,
         Rule::General(method) => selection.methods.contains(&method),
-        Rule::Rigid(_) => true,
+        Rule::Rigid(_) => selection.schemes.is_empty(),
     }
 }
 

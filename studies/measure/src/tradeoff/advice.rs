@@ -84,7 +84,9 @@ fn samples_at_frames(frames: u64) -> u64 {
 fn ways(asked: &Asked<'_>, selection: &Selection) -> Result<Vec<(Candidate, Precision)>, Error> {
     let precisions = selection.precisions.iter().filter(|p| !asked.is_short || **p != Precision::DoubleDouble);
     let ways: Vec<(Candidate, Precision)> = precisions
-        .flat_map(|&p| candidates(asked.need.scene, &selection.methods).into_iter().map(move |c| (c, p)))
+        .flat_map(|&p| {
+            candidates(asked.need.scene, &selection.methods, &selection.schemes).into_iter().map(move |c| (c, p))
+        })
         .collect();
     let timed: Vec<_> = ways.iter().copied().filter(|(c, p)| c.is_timed(*p)).collect();
     match (ways.first(), asked.question.budget_us) {

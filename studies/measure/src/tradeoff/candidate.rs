@@ -29,9 +29,20 @@ pub struct Span {
     pub steps: u64,
 }
 
-/// Every way to move a scene with one of the methods. The steps that exist for rigid bodies only come with the full list.
-pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId]) -> Vec<Candidate> {
-    if scene.is_rigid() { for_bodies(methods) } else { methods.iter().map(|&method| Candidate::flat(method)).collect() }
+/// Every way to move a scene with what is chosen. The steps that exist for rigid bodies only come with the full list of methods, or by
+/// their own name.
+pub fn candidates(scene: &dyn AnyScene, methods: &[MethodId], schemes: &[Scheme]) -> Vec<Candidate> {
+    if !scene.is_rigid() {
+        return methods.iter().map(|&method| Candidate::flat(method)).collect();
+    }
+    let mut all = for_bodies(methods);
+    for &scheme in schemes {
+        let candidate = Candidate { scheme, is_rigid: true };
+        if !all.contains(&candidate) {
+            all.push(candidate);
+        }
+    }
+    all
 }
 
 fn for_bodies(methods: &[MethodId]) -> Vec<Candidate> {

@@ -118,6 +118,7 @@ impl Study for Tradeoff {
     type Row = Row;
     const ID: &'static str = "tradeoff";
     const HEEDS: &'static [&'static str] = &["precision", "steps", "for"];
+    const TAKES_SCHEMES: bool = true;
     const ABOUT: &'static str = "Compares methods by cost at equal error, in evaluations and in time. Given --error or --budget-us it prints advice for a \
         scene, which it has run, and writes no files. Errors are the largest over the run, at every step in advice and at 32 times in the \
         study: of positions in m, of attitudes and angles in rad, the larger where a scene has both, or of the quantity after --of";

@@ -48,7 +48,7 @@ pub fn errors(selection: &Selection) -> Vec<Row> {
         in_parallel(&scenes, |_| 1, &Progress::silent(), |scene| ExactSamples::new(*scene, horizon(scene), SAMPLES));
     let mut jobs = Vec::new();
     for (scene, truth) in selection.scenes.iter().zip(&truths) {
-        for candidate in candidates(scene.as_ref(), &selection.methods) {
+        for candidate in candidates(scene.as_ref(), &selection.methods, &selection.schemes) {
             jobs.extend(jobs_of(selection, scene.as_ref(), truth, candidate));
         }
     }
@@ -135,7 +135,7 @@ pub fn time(selection: &Selection, rows: &mut Vec<Row>) {
     for scene in &selection.scenes {
         let of_scene = |row: &Row| row.part == Part::Run && row.scene == scene.id();
         let mut tasks = Vec::new();
-        for candidate in candidates(scene.as_ref(), &selection.methods) {
+        for candidate in candidates(scene.as_ref(), &selection.methods, &selection.schemes) {
             for &precision in &selection.precisions {
                 let id = candidate.id();
                 let sweep: Vec<&Row> =
@@ -202,7 +202,7 @@ fn length_rows(scene: &dyn AnyScene, selection: &Selection, care: TimingEffort) 
         !candidate.scheme.is_implicit() && (!candidate.is_rigid || candidate.scheme.storage == Formulation::BodyOmega)
     };
     let end_s = selection.end_s(scene);
-    let tasks: Vec<Task> = candidates(scene, &selection.methods)
+    let tasks: Vec<Task> = candidates(scene, &selection.methods, &selection.schemes)
         .into_iter()
         .filter(chosen)
         .flat_map(|candidate| LENGTHS.map(|steps| (candidate, steps)))

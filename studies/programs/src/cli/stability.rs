@@ -5,7 +5,9 @@ use measure::stability::answer::{Answer, Question, answer};
 
 use super::Ending;
 use crate::options::Common;
+use crate::produce::refuse_schemes;
 use measure::error::Error;
+use measure::stability::Stability;
 
 /// A step, or a rate, to judge: positive numbers, as the flags are read.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -39,7 +41,9 @@ pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
         question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
     asked.then(|| {
         common.answers()?;
-        let Answer { text, stable } = answer(&common.selection()?, question);
+        let selection = common.selection()?;
+        refuse_schemes::<Stability>(&selection)?;
+        let Answer { text, stable } = answer(&selection, question);
         Ok(Ending { text, note: None, code: u8::from(!stable) })
     })
 }
