@@ -18,9 +18,19 @@ use scenes::theory::ExpectedOrder;
 use measure::stability::amplification;
 use scenes::stepping::Stepping;
 
-/// The catalogue, by name.
+/// The catalogue by name, and scenes with other parameters by name and settings: `oscillator mass=2 stiffness=8`.
 pub struct Known {
-    scenes: BTreeMap<&'static str, Scene>,
+    scenes: BTreeMap<String, Scene>,
+}
+
+/// The name by which rows name a scene with settings.
+pub fn with_settings(id: &str, settings: &str) -> String {
+    if settings.is_empty() { id.to_owned() } else { format!("{id} {settings}") }
+}
+
+/// The name of the scene, and the settings, of such a name.
+pub fn without_settings(name: &str) -> (&str, &str) {
+    name.split_once(' ').unwrap_or((name, ""))
 }
 
 struct Scene {
@@ -33,7 +43,30 @@ struct Scene {
 impl Known {
     /// The catalogue with its default parameters.
     pub fn catalogue() -> Self {
-        Known { scenes: scenes::all().into_iter().map(|scene| (scene.id(), Scene::of(scene))).collect() }
+        let all = scenes::all().into_iter();
+        Known { scenes: all.map(|scene| (scene.id().to_owned(), Scene::of(scene))).collect() }
+    }
+
+    /// Takes in a scene with these parameters, `NAME=VALUE` parted by blanks. Rows name it by [`with_settings`].
+    ///
+    /// # Errors
+    /// An unknown scene or parameter, a value that is not allowed, or parameters that do not fit together.
+    pub fn add(&mut self, id: &str, settings: &str) -> Result<(), Error> {
+        let name = with_settings(id, settings);
+        if settings.is_empty() || self.scenes.contains_key(&name) {
+            return Ok(());
+        }
+        let mut scene = scenes::by_id(id)?;
+        for setting in settings.split_whitespace() {
+            let Some((parameter, value)) = setting.split_once('=') else {
+                let message = format!("'{setting}' is not of the form NAME=VALUE; part settings by blanks");
+                return Err(Error::plan("set", message));
+            };
+            scene.scene_mut().set(id, parameter, value)?;
+        }
+        scene.scene().check()?;
+        self.scenes.insert(name, Scene::of(scene));
+        Ok(())
     }
 
     /// The scene of a row.
@@ -132,7 +165,7 @@ impl Known {
     /// restores it, whatever moves.
     pub fn combinations(&self) -> Vec<(&'static str, String, Subject)> {
         let mut all = Vec::new();
-        for (&id, scene) in &self.scenes {
+        for (id, scene) in scenes::IDS.iter().filter_map(|&id| Some((id, self.scenes.get(id)?))) {
             for method in Stepper::all(scene.scene.as_ref()) {
                 let errors = scene.quantities.iter().map(|&quantity| Subject::Error(quantity));
                 let invariants = scene.invariants.iter().filter(|d| **d != Drift::QuaternionNorm);
@@ -147,7 +180,7 @@ impl Known {
 
     /// Every scene, in the order of the catalogue.
     pub fn in_order(&self) -> Vec<&dyn AnyScene> {
-        scenes::IDS.iter().filter_map(|id| self.scenes.get(id)).map(|scene| scene.scene.as_ref()).collect()
+        scenes::IDS.iter().filter_map(|id| self.scenes.get(*id)).map(|scene| scene.scene.as_ref()).collect()
     }
 
     /// The first preset of each scene.

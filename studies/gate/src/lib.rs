@@ -80,7 +80,8 @@ impl Bounds {
     /// # Errors
     /// What is not wholly understood, with line and column.
     pub fn parse(bytes: &[u8], place: &str) -> Result<Self, Error> {
-        Ok(Bounds { rows: read::read(bytes, place)?, known: Known::catalogue() })
+        let (rows, known) = read::read(bytes, place)?;
+        Ok(Bounds { rows, known })
     }
 
     /// Judges rows by the methods that they name.

@@ -2,12 +2,12 @@
 
 use csv::{ReaderBuilder, StringRecord};
 
-use super::known::Known;
+use super::known::{Known, with_settings, without_settings};
 use super::row::{Key, Kind, Row, Subject};
 use measure::error::Error;
 use scenes::run::Precision;
 
-/// The columns, in their order.
+/// The columns, in their order; after the first may stand [`SET`].
 pub const COLUMNS: [&str; 13] = [
     "scene",
     "method",
@@ -23,6 +23,9 @@ pub const COLUMNS: [&str; 13] = [
     "reason",
     "mutant",
 ];
+
+/// The column of scene parameters, `NAME=VALUE` parted by blanks. A file without it holds scenes with their default parameters.
+pub const SET: &str = "set";
 
 /// What a reader of the file should know; written at its head.
 const HEAD: &str = "\
@@ -48,19 +51,19 @@ pub const MOST_STEPS: u64 = 1 << 24;
 ///
 /// # Errors
 /// With file, line and column (no column where a whole line is meant): whatever is not a sorted file of bounds that name a run.
-pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
+pub fn read(bytes: &[u8], place: &str) -> Result<(Vec<Row>, Known), Error> {
     let at = |line: u64, column: usize, message: String| at(place, line, column, message);
     let text = utf8(bytes, place)?;
     let mut reader = ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
     let headers = reader.headers().map_err(|e| at(0, 0, e.to_string()))?.clone();
     let header_line = text.lines().position(|line| !line.starts_with('#') && !line.is_empty()).unwrap_or(0) as u64 + 1;
     check_headers(&headers).map_err(|(column, message)| at(header_line, column, message))?;
-    let known = Known::catalogue();
+    let mut known = Known::catalogue();
     let mut rows: Vec<(Key, u64, Row)> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| at(e.position().map_or(0, csv::Position::line), 0, e.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = parse(&record, &known).map_err(|(column, message)| at(line, column, message))?;
+        let row = parse(&record, &headers, &mut known).map_err(|(column, message)| at(line, column, message))?;
         let key = row.key();
         if let Some((before, earlier, _)) = rows.last() {
             if *before == key {
@@ -78,7 +81,7 @@ pub fn read(bytes: &[u8], place: &str) -> Result<Vec<Row>, Error> {
     if rows.is_empty() {
         return Err(at(lines, 0, "holds no row: a gate without rows holds nothing".to_owned()));
     }
-    Ok(rows)
+    Ok((rows, known))
 }
 
 /// A file's bytes as text.
@@ -126,9 +129,18 @@ pub fn write(rows: &[Row]) -> Result<String, Error> {
     sorted.sort_by_cached_key(|row| row.key());
     let mut writer = csv::Writer::from_writer(Vec::new());
     let refuse = |message: String| Error::from(reports::Error::Rows { message });
-    writer.write_record(COLUMNS).map_err(|e| refuse(e.to_string()))?;
+    let has_settings = sorted.iter().any(|row| !without_settings(&row.scene).1.is_empty());
+    let columns = |mut all: Vec<String>, set: &str| {
+        if has_settings {
+            all.insert(1, set.to_owned());
+        }
+        all
+    };
+    let header = COLUMNS.map(str::to_owned).to_vec();
+    writer.write_record(columns(header, SET)).map_err(|e| refuse(e.to_string()))?;
     for row in sorted {
-        writer.write_record(fields(row)).map_err(|e| refuse(e.to_string()))?;
+        let fields = columns(fields(row).to_vec(), without_settings(&row.scene).1);
+        writer.write_record(fields).map_err(|e| refuse(e.to_string()))?;
     }
     let bytes = writer.into_inner().map_err(|e| refuse(e.to_string()))?;
     let body = String::from_utf8(bytes).map_err(|e| refuse(e.to_string()))?;
@@ -138,7 +150,7 @@ pub fn write(rows: &[Row]) -> Result<String, Error> {
 /// A row as the fields of its line. A number is written so that reading it gives the same number back.
 pub fn fields(row: &Row) -> [String; 13] {
     [
-        row.scene.clone(),
+        without_settings(&row.scene).0.to_owned(),
         row.method.clone(),
         row.precision.id().to_owned(),
         row.quantity.id().to_owned(),
@@ -177,29 +189,29 @@ fn check_headers(headers: &StringRecord) -> Result<(), Wrong> {
     if headers.is_empty() {
         return Err((0, format!("no rows: the header should be {}", COLUMNS.join(","))));
     }
-    if let Some(column) = headers.iter().position(|name| !COLUMNS.contains(&name)) {
-        let message = format!("unknown column '{}'; the columns are {}", &headers[column], COLUMNS.join(","));
-        return Err((column + 1, message));
+    let all = format!("the columns are {}; after scene may stand {SET}", COLUMNS.join(","));
+    if let Some(column) = headers.iter().position(|name| name != SET && !COLUMNS.contains(&name)) {
+        return Err((column + 1, format!("unknown column '{}'; {all}", &headers[column])));
     }
-    match COLUMNS.iter().enumerate().find(|(i, name)| headers.get(*i) != Some(name)) {
-        Some((i, name)) => {
-            Err((i + 1, format!("column '{name}' is missing here; the columns are {}", COLUMNS.join(","))))
-        }
-        None if headers.len() > COLUMNS.len() => Err((COLUMNS.len() + 1, "a column too many".to_owned())),
+    let mut expected = COLUMNS.to_vec();
+    if headers.get(1) == Some(SET) {
+        expected.insert(1, SET);
+    }
+    match expected.iter().enumerate().find(|(i, name)| headers.get(*i) != Some(name)) {
+        Some((i, name)) => Err((i + 1, format!("column '{name}' is missing here; {all}"))),
+        None if headers.len() > expected.len() => Err((expected.len() + 1, "a column too many".to_owned())),
         None => Ok(()),
     }
 }
 
-fn column(name: &str) -> usize {
-    COLUMNS.iter().position(|column| *column == name).map_or(0, |i| i + 1)
-}
-
-fn parse(record: &StringRecord, known: &Known) -> Result<Row, Wrong> {
-    if record.len() != COLUMNS.len() {
-        let message = format!("{} fields where the header has {}", record.len(), COLUMNS.len());
-        return Err((record.len().min(COLUMNS.len()) + usize::from(record.len() < COLUMNS.len()), message));
+fn parse(record: &StringRecord, headers: &StringRecord, known: &mut Known) -> Result<Row, Wrong> {
+    let count = headers.len();
+    if record.len() != count {
+        let message = format!("{} fields where the header has {count}", record.len());
+        return Err((record.len().min(count) + usize::from(record.len() < count), message));
     }
-    let field = |name: &str| record.get(column(name) - 1).unwrap_or("");
+    let column = |name: &str| headers.iter().position(|column| column == name).map_or(0, |i| i + 1);
+    let field = |name: &str| column(name).checked_sub(1).and_then(|i| record.get(i)).unwrap_or("");
     let wrong = |name: &'static str| move |message: String| (column(name), format!("'{name}': {message}"));
     let of_name = |name: &'static str| move |error: &dyn std::fmt::Display| (column(name), error.to_string());
     let number = |name: &'static str| {
@@ -207,8 +219,12 @@ fn parse(record: &StringRecord, known: &Known) -> Result<Row, Wrong> {
         let x: f64 = text.parse().map_err(|_| wrong(name)(format!("'{text}' is not a number")))?;
         if x.is_finite() { Ok(x) } else { Err(wrong(name)(format!("{text} is no bound; give a finite number"))) }
     };
+    let (id, settings) = (field("scene"), field(SET).split_whitespace().collect::<Vec<_>>().join(" "));
+    if scenes::IDS.contains(&id) {
+        known.add(id, &settings).map_err(|error| (column(SET), error.to_string()))?;
+    }
     let row = Row {
-        scene: field("scene").to_owned(),
+        scene: with_settings(id, &settings),
         method: field("method").to_owned(),
         precision: Precision::from_id(field("precision")).map_err(|error| of_name("precision")(&error))?,
         quantity: Subject::from_id(field("quantity")).map_err(|error| of_name("quantity")(&error))?,

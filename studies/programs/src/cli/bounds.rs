@@ -6,7 +6,7 @@ use clap::{Args, ColorChoice, ValueEnum};
 
 use super::{Ending, ProgramInfo};
 use crate::options::{threads, use_threads};
-use gate::known::Known;
+use gate::known::{Known, without_settings};
 use gate::{Bounds, Judged, Row, audit, baseline, check, deaths, format, read, row, update};
 use measure::error::Error;
 
@@ -151,7 +151,7 @@ fn chosen<'a>(cli: &Flags, bounds: &'a Bounds) -> Result<Vec<&'a Row>, Error> {
     cli.method.iter().try_for_each(|id| bounds.known.is_method(id))?;
     let first = Known::first_presets();
     let wanted = |row: &&Row| {
-        (cli.scene.is_empty() || cli.scene.contains(&row.scene))
+        (cli.scene.is_empty() || cli.scene.iter().any(|id| id == without_settings(&row.scene).0))
             && (cli.method.is_empty() || cli.method.contains(&row.method))
             && (!cli.quick || row::is_quick(row, &first))
     };
