@@ -7,6 +7,7 @@ use integrator::Real;
 
 use super::amplification;
 use super::bisect::{Found, bracket};
+use super::frames;
 use super::limits;
 use crate::study::{Selection, short};
 use scenes::any::AnyScene;
@@ -15,12 +16,16 @@ use scenes::run::{Outcome, Precision, Run, Trajectory};
 use scenes::stepping::Stepping;
 
 /// A step, or a rate, to judge: positive numbers.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Question {
     /// A step to judge, s.
     pub step_s: Option<f64>,
     /// Frames per second: how many substeps does each need?
     pub rate_hz: Option<f64>,
+    /// Steps that follow one another in turn, s.
+    pub frames_s: Vec<f64>,
+    /// Part by which the step to judge varies at random, either way.
+    pub jitter: Option<f64>,
 }
 
 /// The text of an answer, and whether every step asked about is stable.
@@ -33,7 +38,7 @@ pub struct Answer {
 }
 
 /// Answers for every chosen scene and method, in the first chosen precision (f64 if all are).
-pub fn answer(selection: &Selection, question: Question) -> Answer {
+pub fn answer(selection: &Selection, question: &Question) -> Answer {
     let all = selection.precisions.len() == Precision::ALL.len();
     let precision = if all { Precision::F64 } else { selection.precisions[0] };
     let mut answer = Answer { text: String::new(), stable: true };
@@ -46,7 +51,42 @@ pub fn answer(selection: &Selection, question: Question) -> Answer {
     answer
 }
 
-fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
+/// What is said of a scene whose steps are no linear maps: nothing is known, and nothing is called stable.
+const NOT_LINEAR: &str = "not known: the steps of this scene are no linear maps";
+
+/// Steps in turn: a line, and whether they are stable.
+fn in_turn(stepping: &Stepping<'_>, frames_s: &[f64]) -> (String, bool) {
+    let all: Vec<String> = frames_s.iter().map(|h| format!("{h} s")).collect();
+    let all = all.join(", ");
+    let count = frames_s.len();
+    let Some(found) = frames::pattern(stepping, frames_s) else {
+        return (format!("  frames {all} in turn: {NOT_LINEAR}"), false);
+    };
+    let alone = |h: &f64| match frames::pattern(stepping, &[*h]) {
+        Some(one) if one.is_stable => format!("{h} s is stable"),
+        _ => format!("{h} s is not"),
+    };
+    let alone: Vec<String> = frames_s.iter().map(alone).collect();
+    let verdict = if found.is_stable { "stable" } else { "NOT stable" };
+    let each = found.factor.powf(1.0 / count as f64);
+    let factor = format!("factor {:.6} per {count} frames, {each:.6} per frame", found.factor);
+    (format!("  frames {all} in turn: {verdict}: {factor}; alone {}", alone.join(", ")), found.is_stable)
+}
+
+/// Steps that vary at random: a line, and whether errors do not grow.
+fn at_random(stepping: &Stepping<'_>, step_s: f64, part: f64) -> (String, bool) {
+    let Some(found) = frames::jitter(stepping, step_s, part, 1) else {
+        return (format!("  steps of {step_s} s +- {} %: {NOT_LINEAR}", 100.0 * part), false);
+    };
+    let verdict = if found.grows() { "NOT stable" } else { "no growth seen" };
+    let rate = format!("errors grow by a factor exp({:.3e} +- {:.1e}) per step", found.rate, found.half_width);
+    (
+        format!("  steps of {step_s} s +- {} %: {verdict}: {rate}, over {} steps", 100.0 * part, found.steps),
+        !found.grows(),
+    )
+}
+
+fn one(stepping: &Stepping<'_>, question: &Question, answer: &mut Answer) {
     let scale = stepping.scene.scene().info().time_scale_s;
     let mut line = |text: String| {
         // Writing to a string does not fail.
@@ -101,6 +141,16 @@ fn one(stepping: &Stepping<'_>, question: Question, answer: &mut Answer) {
             trial.patience,
             trial.growth()
         ));
+    }
+    if !question.frames_s.is_empty() {
+        let (text, stable) = in_turn(stepping, &question.frames_s);
+        answer.stable &= stable;
+        line(text);
+    }
+    if let (Some(part), Some(step)) = (question.jitter, question.step_s) {
+        let (text, stable) = at_random(stepping, step, part);
+        answer.stable &= stable;
+        line(text);
     }
     if let Some(step) = question.step_s {
         let stable = step <= limit_s;

@@ -7,6 +7,7 @@ pub mod claims;
 pub use scenes::displaced;
 pub mod failure;
 mod figures;
+pub mod frames;
 pub mod limits;
 pub mod maps;
 pub mod models;
@@ -179,7 +180,8 @@ impl Study for Stability {
     const EXAMPLES: &'static str =
         "stability                                                      the whole study, into target/stability/
         stability --scene damped-oscillator --method semi-implicit-euler --set zeta=0.1
-        stability --scene oscillator --method velocity-verlet --step 0.01 --rate 60";
+        stability --scene oscillator --method velocity-verlet --step 0.01 --rate 60
+        stability --scene oscillator --method semi-implicit-euler --frames 0.05,0.13";
     const TITLE: &'static str = "Where does it break? Stability limits";
     const INTRO: &'static str = "The largest stable step of every method on every linear scene, found by bisection on the \
         running scene and held against the amplification matrix and the closed forms; maps of where a method holds; and one \

@@ -10,7 +10,7 @@ use measure::error::Error;
 use measure::stability::Stability;
 
 /// A step, or a rate, to judge: positive numbers, as the flags are read.
-#[derive(Args, Clone, Copy, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "What to ask")]
 pub struct Flags {
     /// A step to judge, s
@@ -19,6 +19,17 @@ pub struct Flags {
     /// Frames per second: how many substeps does each need?
     #[arg(long = "rate", value_name = "HZ", value_parser = frames_per_second, allow_hyphen_values = true)]
     pub rate_hz: Option<f64>,
+    /// Steps that follow one another in turn, s: are they stable together?
+    #[arg(long = "frames", value_name = "S,S,..", value_delimiter = ',', value_parser = seconds_per_step, allow_hyphen_values = true)]
+    pub frames_s: Vec<f64>,
+    /// The step after --step varies at random by this part, either way: do errors grow?
+    #[arg(long, value_name = "PART", value_parser = part, requires = "step_s", allow_hyphen_values = true)]
+    pub jitter: Option<f64>,
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|x: &f64| (0.0..1.0).contains(x));
+    number.ok_or_else(|| "not a part from 0 to below 1; give a part of the step, such as 0.2".to_owned())
 }
 
 fn seconds_per_step(text: &str) -> Result<f64, String> {
@@ -36,14 +47,18 @@ pub(super) fn positive(text: &str, such_as: &str) -> Result<f64, String> {
 
 /// The answer, where the flags ask for one: a step, a rate, or a scene with a method.
 pub fn ask(common: &Common, flags: &Flags) -> Option<Result<Ending, Error>> {
-    let (plan, question) = (&common.plan, Question { step_s: flags.step_s, rate_hz: flags.rate_hz });
-    let asked =
-        question.step_s.is_some() || question.rate_hz.is_some() || !(plan.scene.is_empty() || plan.method.is_empty());
+    let (frames_s, jitter) = (flags.frames_s.clone(), flags.jitter);
+    let question = Question { step_s: flags.step_s, rate_hz: flags.rate_hz, frames_s, jitter };
+    let plan = &common.plan;
+    let asked = question.step_s.is_some()
+        || question.rate_hz.is_some()
+        || !question.frames_s.is_empty()
+        || !(plan.scene.is_empty() || plan.method.is_empty());
     asked.then(|| {
         common.answers()?;
         let selection = common.selection()?;
         refuse_schemes::<Stability>(&selection)?;
-        let Answer { text, stable } = answer(&selection, question);
+        let Answer { text, stable } = answer(&selection, &question);
         Ok(Ending { text, note: None, code: u8::from(!stable) })
     })
 }
