@@ -147,9 +147,8 @@ fn a_run_that_fails_and_a_number_that_is_none_break_their_rows() {
     let nan = held(&Failing::IsNaN);
     let errors: Vec<&Judged> = nan.judged.iter().filter(|one| one.row.kind != Kind::EvaluationsPerStep).collect();
     assert!(!errors.is_empty() && errors.iter().all(|one| one.is_broken()), "{}", check::report(&nan.judged));
-    let none = held(&Failing::CannotRun);
-    assert!(none.judged.iter().all(|one| one.verdict() == reports::Verdict::NotTested));
-    assert!(check::report(&none.judged).contains("0 bounds hold, 0 broken"));
+    let none = bounds.hold("rk4", &Failing::CannotRun).expect_err("nothing was run").to_string();
+    assert!(none.contains("can run none of its") && none.contains("Flat"), "{none}");
 }
 
 fn deaths_of_none(bounds: &Bounds) -> Vec<gate::deaths::Death> {

@@ -51,6 +51,27 @@ fn the_gate_is_red_for_a_method_that_moves_with_the_old_velocity() {
     }
 }
 
+// Fails if: the message of a failed test does not begin with the counts, is long, or does not name the fault.
+#[test]
+fn the_message_has_counts_the_fault_and_the_worst_rows() {
+    let held: Held =
+        bounds().hold("semi-implicit-euler", &Flat(MineWithTheOldVelocity)).expect("there are such bounds");
+    let message = held.summary();
+    let lines: Vec<&str> = message.lines().collect();
+    assert!(lines[0].starts_with("semi-implicit-euler: ") && lines[0].contains("bounds are broken"), "{message}");
+    assert!(lines[1].starts_with("looks like: old-velocity"), "{message}");
+    assert!(lines.len() <= 13 && lines.iter().all(|line| line.chars().count() <= 160), "{message}");
+}
+
+// Fails if: a candidate that can run nothing is held to nothing, or the message does not say what would.
+#[test]
+fn a_candidate_that_runs_no_row_is_an_error_that_names_the_wrapper() {
+    for (method, wrapper) in [("semi-implicit-euler/body-omega", "InBody"), ("rk4/world-omega", "InWorld")] {
+        let error = bounds().hold(method, &Flat(Mine)).expect_err("flat methods move no body").to_string();
+        assert!(error.contains(wrapper), "{error}");
+    }
+}
+
 // Fails if: a name without rows is an empty gate, which always holds.
 #[test]
 fn a_method_without_bounds_is_an_error() {
@@ -61,6 +82,6 @@ fn a_method_without_bounds_is_an_error() {
 // Fails if: a scene that a candidate cannot run counts as held.
 #[test]
 #[should_panic(expected = "bounds are broken")]
-fn a_gate_that_nothing_was_run_for_does_not_hold() {
-    bounds().hold("semi-implicit-euler/body-omega", &Flat(Mine)).expect("there are such bounds").assert();
+fn a_gate_that_is_broken_fails_its_test() {
+    bounds().hold("semi-implicit-euler", &Flat(MineWithTheOldVelocity)).expect("there are such bounds").assert();
 }

@@ -127,9 +127,7 @@ pub fn report(judged: &[Judged]) -> String {
 pub fn broken(judged: &[Judged]) -> Table {
     let headers = ["broken bound", "measured", "bound", "unit", "by", "change since it was set", "reason"];
     let mut table = Table::new(&headers, &["measured"]);
-    let mut broken: Vec<&Judged> = judged.iter().filter(|one| one.is_broken()).collect();
-    broken.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-    for one in broken {
+    for one in worst(judged) {
         let row = &one.row;
         let bound = format!("{:.6e} … {:.6e}", row.low, row.high);
         let cells =
@@ -137,6 +135,13 @@ pub fn broken(judged: &[Judged]) -> Table {
         table.push(cells);
     }
     table
+}
+
+/// The broken rows, those first that are beyond their bounds by most.
+pub fn worst(judged: &[Judged]) -> Vec<&Judged> {
+    let mut broken: Vec<&Judged> = judged.iter().filter(|one| one.is_broken()).collect();
+    broken.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    broken
 }
 
 /// How far outside, in half widths of the interval; infinite where there is no number.
