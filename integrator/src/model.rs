@@ -42,7 +42,7 @@ pub trait Model<T: Real> {
     /// v + (h c) q for a rate c q.
     #[inline(always)]
     fn kick(&self, t: T, h: T, s: &State<Self::Config>) -> Tangent<Self, T> {
-        s.v.plus(self.rate(t, s), h)
+        s.v.add_scaled(self.rate(t, s), h)
     }
 
     /// The velocity of the configuration: v itself, unless what is stored is a momentum.

@@ -92,7 +92,7 @@ impl<F: Frame> Update for Exponential<F> {
     type Frame = F;
     #[inline(always)]
     fn increment<T: Real>(omega: Vector3<T>, h: T) -> Rotation<T> {
-        Rotation::turned(omega, h)
+        Rotation::from_rotation_vector(omega, h)
     }
 }
 
@@ -178,8 +178,8 @@ impl<T: Real, P: Vector<T>> Vector<T> for Twist<T, P> {
         if i < P::DIM { self.linear.component(i) } else { self.angular[i - P::DIM] }
     }
     #[inline(always)]
-    fn plus(self, rate: Self, h: T) -> Self {
-        Twist { linear: self.linear.plus(rate.linear, h), angular: self.angular.plus(rate.angular, h) }
+    fn add_scaled(self, rate: Self, h: T) -> Self {
+        Twist { linear: self.linear.add_scaled(rate.linear, h), angular: self.angular.add_scaled(rate.angular, h) }
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {
@@ -193,11 +193,11 @@ impl<T: Real, U: Update, P: Vector<T>> Space for Pose<T, U, P> {
 
     #[inline(always)]
     fn retract(self, v: Twist<T, P>, h: T) -> Self {
-        Pose::new(self.position.plus(v.linear, h), U::Frame::compose(self.attitude, U::increment(v.angular, h)))
+        Pose::new(self.position.add_scaled(v.linear, h), U::Frame::compose(self.attitude, U::increment(v.angular, h)))
     }
     #[inline(always)]
     fn plus_bracket(k: Twist<T, P>, c: T, a: Twist<T, P>, b: Twist<T, P>) -> Twist<T, P> {
-        Twist { linear: k.linear, angular: k.angular.plus(U::Frame::bracket(a.angular, b.angular), c) }
+        Twist { linear: k.linear, angular: k.angular.add_scaled(U::Frame::bracket(a.angular, b.angular), c) }
     }
     #[inline(always)]
     fn settled(self) -> Self {

@@ -46,12 +46,12 @@ impl<T: Real> Rotation<T> {
     /// exp(phi): the rotation by |phi| rad about phi.
     #[inline(always)]
     pub fn exp(phi: Vector3<T>) -> Self {
-        Self::turned(phi, T::lit(1.0))
+        Self::from_rotation_vector(phi, T::lit(1.0))
     }
 
     /// exp(omega h): what the constant angular velocity omega does in the time h.
     #[inline(always)]
-    pub fn turned(omega: Vector3<T>, h: T) -> Self {
+    pub fn from_rotation_vector(omega: Vector3<T>, h: T) -> Self {
         let half = h * T::lit(0.5);
         let (cosine, sinc) = T::cos_sinc(dot(omega, omega) * (half * half));
         Rotation { w: cosine, v: omega * (sinc * half) }

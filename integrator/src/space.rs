@@ -29,7 +29,7 @@ pub trait Vector<T: Real>:
     fn component(&self, i: usize) -> T;
 
     /// `self + rate * h`, the update every method is made of; fused where the arithmetic fuses.
-    fn plus(self, rate: Self, h: T) -> Self;
+    fn add_scaled(self, rate: Self, h: T) -> Self;
 
     /// The zero vector.
     fn zero() -> Self {
@@ -87,7 +87,7 @@ impl<T: Real, const R: usize, const C: usize> Vector<T> for SMatrix<T, R, C> {
         self[i]
     }
     #[inline(always)]
-    fn plus(self, rate: Self, h: T) -> Self {
+    fn add_scaled(self, rate: Self, h: T) -> Self {
         self.zip_map(&rate, |x, r| r.mul_add(h, x))
     }
 }
@@ -99,7 +99,7 @@ impl<T: Real, const R: usize, const C: usize> Space for SMatrix<T, R, C> {
 
     #[inline(always)]
     fn retract(self, v: Self, h: T) -> Self {
-        self.plus(v, h)
+        self.add_scaled(v, h)
     }
     fn size(&self) -> T {
         sum_of_sizes(self)

@@ -34,7 +34,7 @@ struct MineWithTheOldVelocity;
 
 impl<T: Real, M: Model<T>> Method<T, M> for MineWithTheOldVelocity {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
-        State { q: s.q.retract(m.velocity(s.q, s.v), h), v: s.v.plus(m.rate(t, &s), h) }
+        State { q: s.q.retract(m.velocity(s.q, s.v), h), v: s.v.add_scaled(m.rate(t, &s), h) }
     }
 }
 

@@ -302,7 +302,7 @@ fn vectors_are_their_components() {
         let by_components = |f: &dyn Fn(T, T) -> T| V::from_fn(|i| f(v.component(i), r.component(i)));
         assert!(v + r == by_components(&|a, b| a + b) && v - r == by_components(&|a, b| a - b));
         assert!(-v == by_components(&|a, _| -a) && v * h == by_components(&|a, _| a * h));
-        assert!(v.plus(r, h) == by_components(&|a, b| a + b * h) && V::zero() == v - v);
+        assert!(v.add_scaled(r, h) == by_components(&|a, b| a + b * h) && V::zero() == v - v);
         assert!(v.is_finite());
         for bad in 0..dim {
             assert!(!V::from_fn(|i| T::lit(if i == bad { f64::NAN } else { 1.0 })).is_finite(), "{bad}");

@@ -188,12 +188,12 @@ impl<M: Model<T>> Method<T, M> for Brackets {
         let slope = |t: T, s: &State<M::Config>| (m.velocity(s.q, s.v), m.rate(t, s));
         let factor = |wanted: bool, c: T| if wanted { c } else { T::lit(0.0) };
         let (w1, a1) = slope(t, &s);
-        let (w2, a2) = slope(t + half, &State { q: s.q.retract(w1, half), v: s.v.plus(a1, half) });
+        let (w2, a2) = slope(t + half, &State { q: s.q.retract(w1, half), v: s.v.add_scaled(a1, half) });
         let w2_corrected = M::Config::plus_bracket(w2, factor(self.in_stage_three, -h / T::lit(4.0)), w1, w2);
-        let (w3, a3) = slope(t + half, &State { q: s.q.retract(w2_corrected, half), v: s.v.plus(a2, half) });
-        let (w4, a4) = slope(t + h, &State { q: s.q.retract(w3, h), v: s.v.plus(a3, h) });
+        let (w3, a3) = slope(t + half, &State { q: s.q.retract(w2_corrected, half), v: s.v.add_scaled(a2, half) });
+        let (w4, a4) = slope(t + h, &State { q: s.q.retract(w3, h), v: s.v.add_scaled(a3, h) });
         let w = M::Config::plus_bracket(w1 + w4 + (w2 + w3) * two, factor(self.at_the_end, -half), w1, w4);
-        State { q: s.q.retract(w, sixth), v: s.v.plus(a1 + a4 + (a2 + a3) * two, sixth) }
+        State { q: s.q.retract(w, sixth), v: s.v.add_scaled(a1 + a4 + (a2 + a3) * two, sixth) }
     }
 }
 
@@ -229,9 +229,9 @@ struct VerletAtHalf;
 impl<M: Model<T>> Method<T, M> for VerletAtHalf {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let half = h * T::lit(0.5);
-        let u = s.v.plus(m.rate(t, &s), half);
+        let u = s.v.add_scaled(m.rate(t, &s), half);
         let q = s.q.retract(m.velocity(s.q, u), h);
-        State { q, v: u.plus(m.rate(t + h, &State { q, v: u }), half) }
+        State { q, v: u.add_scaled(m.rate(t + h, &State { q, v: u }), half) }
     }
 }
 

@@ -16,7 +16,7 @@ use measure::tradeoff::cost_at_error::{CostBound, offer, sweeps};
 use measure::tradeoff::front::front;
 use measure::tradeoff::rounding_optimum::minima;
 use measure::tradeoff::stagnation::{HEIGHTS_M, moves, predicted_s};
-use measure::tradeoff::verdict::{Factor, duels};
+use measure::tradeoff::verdict::{Factor, comparisons};
 use measure::tradeoff::{CostMeasure, Part, Row, Tradeoff};
 
 const SCENES: [&str; 5] = ["constant-force", "oscillator", "pendulum", "kepler", "tennis-racket"];
@@ -220,10 +220,11 @@ fn a_u_curve_has_its_minimum_inside_the_sweep() {
 /// where RK4 meets 1e-2 with its coarsest run and semi-implicit Euler misses 1e-4 with its finest.
 #[test]
 fn semi_implicit_euler_is_dear_where_the_error_is_small() {
-    let duels = duels(rows(), CostMeasure::Evaluations);
+    let comparisons = comparisons(rows(), CostMeasure::Evaluations);
     for scene in ["oscillator", "pendulum", "kepler", "tennis-racket"] {
-        let at =
-            |level: f64| duels.iter().find(|d| d.scene == scene && d.level == level).expect("a level of the table");
+        let at = |level: f64| {
+            comparisons.iter().find(|d| d.scene == scene && d.level == level).expect("a level of the table")
+        };
         let factor = |level| match at(level).beaten_by() {
             Some(Factor::Of(x) | Factor::AtLeast(x)) => x,
             other => panic!("{scene}: {other:?}"),

@@ -28,7 +28,7 @@ impl<T: Real> Model<T> for Spring<T> {
     }
     #[inline(always)]
     fn kick(&self, _t: T, h: T, s: &State<Vector1<T>>) -> Vector1<T> {
-        s.v.plus(s.q, self.minus_w_squared * h)
+        s.v.add_scaled(s.q, self.minus_w_squared * h)
     }
 }
 

@@ -49,16 +49,16 @@ impl<const N: usize> Formula<N> {
         }
         let (mut w, mut a): (Tangent<M, T>, Tangent<M, T>) = (Vector::zero(), Vector::zero());
         for ((w_i, a_i), weight) in history.slopes.into_iter().zip(self.weights) {
-            (w, a) = (w.plus(w_i, T::lit(weight)), a.plus(a_i, T::lit(weight)));
+            (w, a) = (w.add_scaled(w_i, T::lit(weight)), a.add_scaled(a_i, T::lit(weight)));
         }
         if N > 2 {
             // The second term of Magnus's series, -(h^3/12) [w, w'] in the middle of the step, by backward differences.
             let [(newest, _), (before, _), (oldest, _), ..] = history.slopes[..] else { return s };
-            let difference = oldest.plus(before, T::lit(-3.0));
+            let difference = oldest.add_scaled(before, T::lit(-3.0));
             w = M::Config::plus_bracket(w, h * T::lit(-self.denominator / 12.0), newest, difference);
         }
         let scaled = h / T::lit(self.denominator);
-        State { q: s.q.retract(w, scaled), v: s.v.plus(a, scaled) }
+        State { q: s.q.retract(w, scaled), v: s.v.add_scaled(a, scaled) }
     }
 }
 

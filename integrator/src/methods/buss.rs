@@ -24,12 +24,14 @@ fn step<T: Real, B: RigidBody<T>, U: Update<Frame = World>>(
     let moment = load.angular + cross(s.v.angular, omega);
     let turning: Vector3<T> = q.rotate(q.rotate_back(moment).component_div(&m.body().inertia()));
     let mean = Twist {
-        linear: velocity.linear.plus(load.linear, half),
-        angular: omega.plus(turning, half).plus(cross(turning, omega), h * h * T::lit(bracket) / T::lit(12.0)),
+        linear: velocity.linear.add_scaled(load.linear, half),
+        angular: omega
+            .add_scaled(turning, half)
+            .add_scaled(cross(turning, omega), h * h * T::lit(bracket) / T::lit(12.0)),
     };
     let moved = s.q.retract(mean, h);
-    let last = m.rate(t + h, &State { q: moved, v: s.v.plus(load, h) });
-    State { q: moved, v: s.v.plus(load + last, half) }
+    let last = m.rate(t + h, &State { q: moved, v: s.v.add_scaled(load, h) });
+    State { q: moved, v: s.v.add_scaled(load + last, half) }
 }
 
 macro_rules! buss {

@@ -58,11 +58,11 @@ fn composed_verlet<T: Real, M: Model<T>>(
         let part: T = length(half, i);
         let (step, half_step) = (part * h, part * h * T::lit(0.5));
         elapsed += part;
-        let u = s.v.plus(a, half_step);
+        let u = s.v.add_scaled(a, half_step);
         let q_half = s.q.retract(m.velocity(s.q, u), half_step);
         let q = s.q.retract(m.velocity(q_half, u), step);
-        a = m.rate(elapsed.mul_add(h, t), &State { q, v: s.v.plus(a, step) });
-        s = State { q, v: u.plus(a, half_step) };
+        a = m.rate(elapsed.mul_add(h, t), &State { q, v: s.v.add_scaled(a, step) });
+        s = State { q, v: u.add_scaled(a, half_step) };
     }
     s
 }

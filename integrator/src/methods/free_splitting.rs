@@ -56,12 +56,12 @@ impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B, U
             Twist { linear: m.body().acceleration(t, &at), angular: torque.component_div(&inertia) }
         };
         let kick = alpha(t, &s);
-        let u = s.v.plus(kick, half);
-        let q = Pose::new(s.q.position.plus(u.linear, h), s.q.attitude);
+        let u = s.v.add_scaled(kick, half);
+        let q = Pose::new(s.q.position.add_scaled(u.linear, h), s.q.attitude);
         let drifted = drift(inertia, half, State { q, v: u });
-        let predicted = drifted.v.plus(kick, half);
+        let predicted = drifted.v.add_scaled(kick, half);
         let kick = alpha(t + h, &State { q: drifted.q, v: predicted });
-        State { q: drifted.q, v: drifted.v.plus(kick, half) }
+        State { q: drifted.q, v: drifted.v.add_scaled(kick, half) }
     }
 }
 

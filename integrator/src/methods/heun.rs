@@ -37,8 +37,8 @@ impl<T: Real, M: Model<T>> Method<T, M> for Heun {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let half = h * T::lit(0.5);
         let (w1, a1) = (m.velocity(s.q, s.v), m.rate(t, &s));
-        let s2 = State { q: s.q.retract(w1, h), v: s.v.plus(a1, h) };
+        let s2 = State { q: s.q.retract(w1, h), v: s.v.add_scaled(a1, h) };
         let (w2, a2) = (m.velocity(s2.q, s2.v), m.rate(t + h, &s2));
-        State { q: s.q.retract(w1 + w2, half), v: s.v.plus(a1 + a2, half) }
+        State { q: s.q.retract(w1 + w2, half), v: s.v.add_scaled(a1 + a2, half) }
     }
 }

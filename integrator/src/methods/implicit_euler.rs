@@ -31,11 +31,11 @@ impl ImplicitEuler {
 
 impl<T: Single, M: Model<T>> Method<T, M> for ImplicitEuler {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
-        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), h) };
+        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.add_scaled(m.rate(t, &s), h) };
         let end = |z: &Pair<_>| State { q: s.q.retract(z.w, h), v: z.v };
         let solution = solve::<T, _>(guess, crossing_speed(&s.q, h), &|z| {
             let s1 = end(z);
-            Pair { w: z.w - m.velocity(s1.q, s1.v), v: z.v - s.v.plus(m.rate(t + h, &s1), h) }
+            Pair { w: z.w - m.velocity(s1.q, s1.v), v: z.v - s.v.add_scaled(m.rate(t + h, &s1), h) }
         });
         end(&solution.unwrap_or(Pair { w: no_solution(), v: no_solution() }))
     }

@@ -48,9 +48,9 @@ impl<T: Real, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B, U
         let inertia = m.body().inertia();
         let at = m.kinematics(&s);
         let torque = m.body().torque(t, &at).plus_in_body(s.q.attitude, Vector3::zero());
-        let u = s.v.angular.plus(torque.component_div(&inertia), h);
+        let u = s.v.angular.add_scaled(torque.component_div(&inertia), h);
         let v = Twist {
-            linear: s.v.linear.plus(m.body().acceleration(t, &at), h),
+            linear: s.v.linear.add_scaled(m.body().acceleration(t, &at), h),
             angular: u - newton_correction(inertia, u, h),
         };
         State { q: s.q.retract(v, h), v }

@@ -36,12 +36,12 @@ impl ImplicitMidpoint {
 impl<T: Single, M: Model<T>> Method<T, M> for ImplicitMidpoint {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let half = h * T::lit(0.5);
-        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.plus(m.rate(t, &s), half) };
+        let guess = Pair { w: m.velocity(s.q, s.v), v: s.v.add_scaled(m.rate(t, &s), half) };
         // The unknown is the middle of the step: w, and vm.
         let solution = solve::<T, _>(guess, crossing_speed(&s.q, h), &|z| {
             let middle = State { q: s.q.retract(z.w, half), v: z.v };
             let w = m.velocity(middle.q, middle.v);
-            Pair { w: z.w - w, v: z.v - s.v.plus(m.rate(t + half, &middle), half) }
+            Pair { w: z.w - w, v: z.v - s.v.add_scaled(m.rate(t + half, &middle), half) }
         });
         let z = solution.unwrap_or(Pair { w: no_solution(), v: no_solution() });
         State { q: s.q.retract(z.w, h), v: z.v + (z.v - s.v) }

@@ -40,16 +40,20 @@ impl<T: Real, M: Model<T>> Method<T, M> for Kutta3 {
         let (half, two) = (h * T::lit(0.5), T::lit(2.0));
         let (w1, a1) = (m.velocity(s.q, s.v), m.rate(t, &s));
 
-        let s2 = State { q: s.q.retract(w1, half), v: s.v.plus(a1, half) };
+        let s2 = State { q: s.q.retract(w1, half), v: s.v.add_scaled(a1, half) };
         let (w2, a2) = (m.velocity(s2.q, s2.v), m.rate(t + half, &s2));
         let k2 = M::Config::plus_bracket(w2, h * T::lit(-0.25), w1, w2);
 
-        let s3 = State { q: s.q.retract((-w1).plus(k2, two), h), v: s.v.plus((-a1).plus(a2, two), h) };
+        let s3 =
+            State { q: s.q.retract((-w1).add_scaled(k2, two), h), v: s.v.add_scaled((-a1).add_scaled(a2, two), h) };
         let (w3, a3) = (m.velocity(s3.q, s3.v), m.rate(t + h, &s3));
-        let k3 = M::Config::plus_bracket(w3, -half, (-w1).plus(w2, two), w3);
+        let k3 = M::Config::plus_bracket(w3, -half, (-w1).add_scaled(w2, two), w3);
 
         let sixth = h / T::lit(6.0);
         let four = T::lit(4.0);
-        State { q: s.q.retract((w1 + k3).plus(k2, four), sixth), v: s.v.plus((a1 + a3).plus(a2, four), sixth) }
+        State {
+            q: s.q.retract((w1 + k3).add_scaled(k2, four), sixth),
+            v: s.v.add_scaled((a1 + a3).add_scaled(a2, four), sixth),
+        }
     }
 }

@@ -46,8 +46,8 @@ impl<T: Single, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B,
         s: State<Pose<T, U, B::Position>>,
     ) -> State<Pose<T, U, B::Position>> {
         let rate = m.rate(t, &s);
-        let q = Pose::new(s.q.position.plus(s.v.linear, h), s.q.attitude * turn(s.v.angular, rate.angular, h));
-        State { q, v: s.v.plus(rate, h) }
+        let q = Pose::new(s.q.position.add_scaled(s.v.linear, h), s.q.attitude * turn(s.v.angular, rate.angular, h));
+        State { q, v: s.v.add_scaled(rate, h) }
     }
 }
 

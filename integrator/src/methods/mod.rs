@@ -22,7 +22,7 @@
 //!         h: T,
 //!         s: State<Pose<T, U, B::Position>>,
 //!     ) -> State<Pose<T, U, B::Position>> {
-//!         let v = s.v.plus(m.rate(t, &s), h);
+//!         let v = s.v.add_scaled(m.rate(t, &s), h);
 //!         State { q: s.q.retract((s.v + v) * T::lit(0.5), h), v }
 //!     }
 //! }

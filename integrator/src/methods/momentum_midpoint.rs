@@ -45,7 +45,7 @@ impl<T: Real, B: RigidBody<T>, U: Update<Frame = World>> Method<T, WorldMomentum
         s: State<Pose<T, U, B::Position>>,
     ) -> State<Pose<T, U, B::Position>> {
         let half = h * T::lit(0.5);
-        let middle = State { q: s.q.retract(m.velocity(s.q, s.v), half), v: s.v.plus(m.rate(t, &s), half) };
-        State { q: s.q.retract(m.velocity(middle.q, middle.v), h), v: s.v.plus(m.rate(t + half, &middle), h) }
+        let middle = State { q: s.q.retract(m.velocity(s.q, s.v), half), v: s.v.add_scaled(m.rate(t, &s), half) };
+        State { q: s.q.retract(m.velocity(middle.q, middle.v), h), v: s.v.add_scaled(m.rate(t + half, &middle), h) }
     }
 }

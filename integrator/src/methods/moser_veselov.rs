@@ -60,13 +60,13 @@ impl<T: Single, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B,
             Twist { linear: m.body().acceleration(t, &at), angular: torque.component_div(&inertia) }
         };
         let kick = alpha(t, &s);
-        let u = s.v.plus(kick, half);
+        let u = s.v.add_scaled(kick, half);
         let l = inertia.component_mul(&u.angular);
         let turn = turn(inertia, l, h);
-        let q = Pose::new(s.q.position.plus(u.linear, h), s.q.attitude * turn);
+        let q = Pose::new(s.q.position.add_scaled(u.linear, h), s.q.attitude * turn);
         let v = Twist { linear: u.linear, angular: turn.rotate_back(l).component_div(&inertia) };
-        let kick = alpha(t + h, &State { q, v: v.plus(kick, half) });
-        State { q, v: v.plus(kick, half) }
+        let kick = alpha(t + h, &State { q, v: v.add_scaled(kick, half) });
+        State { q, v: v.add_scaled(kick, half) }
     }
 }
 

@@ -50,10 +50,10 @@ impl<T: Single, B: RigidBody<T>, U: Update<Frame = Body>> Method<T, BodyOmega<B,
         let at = m.kinematics(&s);
         let torque = m.body().torque(t, &at).plus_in_body(s.q.attitude, Vector3::zero());
         let l = inertia.component_mul(&s.v.angular);
-        let turned = l.plus(cross(l, s.v.angular), h);
-        let momentum = (turned * restoring(l, turned)).plus(torque, h);
+        let turned = l.add_scaled(cross(l, s.v.angular), h);
+        let momentum = (turned * restoring(l, turned)).add_scaled(torque, h);
         let v = Twist {
-            linear: s.v.linear.plus(m.body().acceleration(t, &at), h),
+            linear: s.v.linear.add_scaled(m.body().acceleration(t, &at), h),
             angular: momentum.component_div(&inertia),
         };
         State { q: s.q.retract(v, h), v }

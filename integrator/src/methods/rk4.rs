@@ -44,19 +44,19 @@ impl<T: Real, M: Model<T>> Method<T, M> for Rk4 {
         let two = T::lit(2.0);
         let (w1, a1) = (m.velocity(s.q, s.v), m.rate(t, &s));
 
-        let s2 = State { q: s.q.retract(w1, half), v: s.v.plus(a1, half) };
+        let s2 = State { q: s.q.retract(w1, half), v: s.v.add_scaled(a1, half) };
         let (w2, a2) = (m.velocity(s2.q, s2.v), m.rate(t + half, &s2));
 
         let w2_corrected = M::Config::plus_bracket(w2, h * T::lit(-0.25), w1, w2);
-        let s3 = State { q: s.q.retract(w2_corrected, half), v: s.v.plus(a2, half) };
+        let s3 = State { q: s.q.retract(w2_corrected, half), v: s.v.add_scaled(a2, half) };
         let (w3, a3) = (m.velocity(s3.q, s3.v), m.rate(t + half, &s3));
 
-        let s4 = State { q: s.q.retract(w3, h), v: s.v.plus(a3, h) };
+        let s4 = State { q: s.q.retract(w3, h), v: s.v.add_scaled(a3, h) };
         let (w4, a4) = (m.velocity(s4.q, s4.v), m.rate(t + h, &s4));
 
-        let w = M::Config::plus_bracket((w1 + w4).plus(w2 + w3, two), -half, w1, w4);
-        let a = (a1 + a4).plus(a2 + a3, two);
+        let w = M::Config::plus_bracket((w1 + w4).add_scaled(w2 + w3, two), -half, w1, w4);
+        let a = (a1 + a4).add_scaled(a2 + a3, two);
         let sixth = h / T::lit(6.0);
-        State { q: s.q.retract(w, sixth), v: s.v.plus(a, sixth) }
+        State { q: s.q.retract(w, sixth), v: s.v.add_scaled(a, sixth) }
     }
 }

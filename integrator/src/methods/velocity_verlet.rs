@@ -40,11 +40,11 @@ impl<T: Real, M: Model<T>> Method<T, M> for VelocityVerlet {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let half = h * T::lit(0.5);
         let a0 = m.rate(t, &s);
-        let u = s.v.plus(a0, half);
+        let u = s.v.add_scaled(a0, half);
         let q_half = s.q.retract(m.velocity(s.q, u), half);
         let q = s.q.retract(m.velocity(q_half, u), h);
-        let a1 = m.rate(t + h, &State { q, v: s.v.plus(a0, h) });
-        State { q, v: u.plus(a1, half) }
+        let a1 = m.rate(t + h, &State { q, v: s.v.add_scaled(a0, h) });
+        State { q, v: u.add_scaled(a1, half) }
     }
 }
 

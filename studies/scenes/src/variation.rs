@@ -179,7 +179,7 @@ fn derivative<Q: Space<Scalar = fx128>>(
         return Q::Tangent::zero();
     }
     let h = fx128::lit((DISPLACEMENT / part).log2().round().exp2());
-    let rate = |h: fx128| motion.rate(t, &State { q: at.q.retract(e[0], h), v: at.v.plus(e[1], h) });
+    let rate = |h: fx128| motion.rate(t, &State { q: at.q.retract(e[0], h), v: at.v.add_scaled(e[1], h) });
     (rate(h) - rate(-h)) * (fx128::lit(0.5) / h)
 }
 
@@ -192,7 +192,7 @@ fn propagate<Q: Space<Scalar = fx128>>(
 ) -> Vec<Pair<Q::Tangent>> {
     let lit = fx128::lit;
     let h = space * lit(2.0 * stride as f64);
-    let plus = |[q, v]: Pair<Q::Tangent>, k: Pair<Q::Tangent>, h: fx128| [q.plus(k[0], h), v.plus(k[1], h)];
+    let plus = |[q, v]: Pair<Q::Tangent>, k: Pair<Q::Tangent>, h: fx128| [q.add_scaled(k[0], h), v.add_scaled(k[1], h)];
     let every = (nodes.len() - 1) / CHECKPOINTS as usize;
     let mut e = [Q::Tangent::zero(); 2];
     let mut seen = Vec::new();
@@ -225,7 +225,7 @@ fn compare<Q: Space<Scalar = fx128>>(
         let part = part_of(e, sizes);
         let h = if part == 0.0 { 1.0 } else { (DISPLACEMENT / part).log2().round().exp2() };
         let step = fx128::lit(h);
-        let moved = State { q: at.q.retract(e[0], step), v: at.v.plus(e[1], step) };
+        let moved = State { q: at.q.retract(e[0], step), v: at.v.add_scaled(e[1], step) };
         motion.observe(&moved).distances(&motion.observe(at)).into_iter().map(|(q, d)| (q, d / h)).collect()
     };
     let mut all: Vec<Leading> = Vec::new();

@@ -30,8 +30,8 @@ impl<T: Real, M: Model<T>> Method<T, M> for ExplicitMidpoint {
     fn step(&self, m: &M, t: T, h: T, s: State<M::Config>) -> State<M::Config> {
         let half = h * T::lit(0.5);
         let (w1, a1) = (m.velocity(s.q, s.v), m.rate(t, &s));
-        let middle = State { q: s.q.retract(w1, half), v: s.v.plus(a1, half) };
+        let middle = State { q: s.q.retract(w1, half), v: s.v.add_scaled(a1, half) };
         let (w2, a2) = (m.velocity(middle.q, middle.v), m.rate(t + half, &middle));
-        State { q: s.q.retract(w2, h), v: s.v.plus(a2, h) }
+        State { q: s.q.retract(w2, h), v: s.v.add_scaled(a2, h) }
     }
 }

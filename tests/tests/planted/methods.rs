@@ -35,23 +35,24 @@ impl<M: Model<f64>> Method<f64, M> for Steps {
             Steps::Rk4 { a, c, b, brackets } => rk4(m, t, h, s, (a, c, b, brackets)),
             Steps::Kdk { kicks, drift, half, mix, times, ahead, stale } => {
                 let a0 = m.rate(t + times[0] * h, &s);
-                let u = s.v.plus(a0, kicks[0] * h);
-                let v = (u * mix).plus(s.v, 1.0 - mix);
+                let u = s.v.add_scaled(a0, kicks[0] * h);
+                let v = (u * mix).add_scaled(s.v, 1.0 - mix);
                 let between = s.q.retract(m.velocity(s.q, v), half * h);
                 let q = s.q.retract(m.velocity(between, v), drift * h);
                 if kicks[1] == 0.0 {
                     return State { q, v: u };
                 }
-                let a1 = if stale { a0 } else { m.rate(t + times[1] * h, &State { q, v: s.v.plus(a0, ahead * h) }) };
-                State { q, v: u.plus(a1, kicks[1] * h) }
+                let a1 =
+                    if stale { a0 } else { m.rate(t + times[1] * h, &State { q, v: s.v.add_scaled(a0, ahead * h) }) };
+                State { q, v: u.add_scaled(a1, kicks[1] * h) }
             }
             Steps::Theta { theta, time, iterations } => {
                 let (mut w, mut v) = (m.velocity(s.q, s.v), s.v);
                 for _ in 0..iterations {
                     let at = State { q: s.q.retract(w, theta * h), v };
-                    (w, v) = (m.velocity(at.q, at.v), s.v.plus(m.rate(t + time * h, &at), theta * h));
+                    (w, v) = (m.velocity(at.q, at.v), s.v.add_scaled(m.rate(t + time * h, &at), theta * h));
                 }
-                State { q: s.q.retract(w, h), v: s.v.plus(v - s.v, 1.0 / theta) }
+                State { q: s.q.retract(w, h), v: s.v.add_scaled(v - s.v, 1.0 / theta) }
             }
         }
     }
@@ -61,7 +62,7 @@ type Tableau = ([f64; 3], [f64; 3], [f64; 4], [f64; 2]);
 
 fn rk4<M: Model<f64>>(m: &M, t: f64, h: f64, s: State<M::Config>, (a, c, b, brackets): Tableau) -> State<M::Config> {
     let bracket = |k, c: f64, x, y| M::Config::plus_bracket(k, c * h, x, y);
-    let stage = |w, k, part: f64| State { q: s.q.retract(w, part * h), v: s.v.plus(k, part * h) };
+    let stage = |w, k, part: f64| State { q: s.q.retract(w, part * h), v: s.v.add_scaled(k, part * h) };
     let (w1, k1) = (m.velocity(s.q, s.v), m.rate(t, &s));
     let s2 = stage(w1, k1, a[0]);
     let (w2, k2) = (m.velocity(s2.q, s2.v), m.rate(t + c[0] * h, &s2));
@@ -69,9 +70,10 @@ fn rk4<M: Model<f64>>(m: &M, t: f64, h: f64, s: State<M::Config>, (a, c, b, brac
     let (w3, k3) = (m.velocity(s3.q, s3.v), m.rate(t + c[1] * h, &s3));
     let s4 = stage(w3, k3, a[2]);
     let (w4, k4) = (m.velocity(s4.q, s4.v), m.rate(t + c[2] * h, &s4));
-    let sum = |k: [Tangent<M, f64>; 4]| (k[0] * b[0]).plus(k[1], b[1]).plus(k[2], b[2]).plus(k[3], b[3]);
+    let sum =
+        |k: [Tangent<M, f64>; 4]| (k[0] * b[0]).add_scaled(k[1], b[1]).add_scaled(k[2], b[2]).add_scaled(k[3], b[3]);
     let w = bracket(sum([w1, w2, w3, w4]), brackets[1] / 6.0, w1, w4);
-    State { q: s.q.retract(w, h), v: s.v.plus(sum([k1, k2, k3, k4]), h) }
+    State { q: s.q.retract(w, h), v: s.v.add_scaled(sum([k1, k2, k3, k4]), h) }
 }
 
 /// Every coefficient of a method 1 % off, and with the wrong sign: name and step.

@@ -13,7 +13,7 @@ fn derivative<T: Real, M: Model<T>>(m: &M, t: T, s: &State<M::Config>) -> (Tange
 }
 
 fn moved<T: Real, Q: Flat + Space<Scalar = T>>(s: State<Q>, h: T, (dq, dv): (Q, Q)) -> State<Q> {
-    State { q: s.q.plus(dq, h), v: s.v.plus(dv, h) }
+    State { q: s.q.add_scaled(dq, h), v: s.v.add_scaled(dv, h) }
 }
 
 /// An explicit Runge-Kutta method on a flat space by its tableau.
@@ -61,14 +61,14 @@ impl Tableau {
                 let two = T::lit(2.0);
                 let k3 = derivative(m, t + h, &moved(s, h, (k2.0 * two - k1.0, k2.1 * two - k1.1)));
                 let four = T::lit(4.0);
-                moved(s, h / T::lit(6.0), ((k1.0 + k3.0).plus(k2.0, four), (k1.1 + k3.1).plus(k2.1, four)))
+                moved(s, h / T::lit(6.0), ((k1.0 + k3.0).add_scaled(k2.0, four), (k1.1 + k3.1).add_scaled(k2.1, four)))
             }
             Tableau::Classical => {
                 let k2 = derivative(m, t + half, &moved(s, half, k1));
                 let k3 = derivative(m, t + half, &moved(s, half, k2));
                 let k4 = derivative(m, t + h, &moved(s, h, k3));
                 let two = T::lit(2.0);
-                let sum = ((k1.0 + k4.0).plus(k2.0 + k3.0, two), (k1.1 + k4.1).plus(k2.1 + k3.1, two));
+                let sum = ((k1.0 + k4.0).add_scaled(k2.0 + k3.0, two), (k1.1 + k4.1).add_scaled(k2.1 + k3.1, two));
                 moved(s, h / T::lit(6.0), sum)
             }
         }
@@ -137,7 +137,7 @@ impl Memory {
             let zero = (M::Config::zero(), M::Config::zero());
             let sum = weights.iter().zip(&history).fold(zero, |sum, (w, f)| {
                 let w = T::lit(*w);
-                (sum.0.plus(f.0, w), sum.1.plus(f.1, w))
+                (sum.0.add_scaled(f.0, w), sum.1.add_scaled(f.1, w))
             });
             let before = s;
             s = m.contact(&before, moved(s, h / T::lit(below), sum));

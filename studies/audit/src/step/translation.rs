@@ -168,18 +168,18 @@ fn step<T: Single>(plan: Plan, point: &Point, h: f64, s: State<Vector3<T>>) -> S
         Scheme::Method(method) => method.visit(Once { point: *point, h: step, s }),
         Scheme::Tableau(tableau) => tableau.step(point, T::lit(0.0), step, s),
         Scheme::MeanVelocity => {
-            let v = s.v.plus(integrator::Model::rate(point, step, &s), step);
-            State { q: s.q.plus((s.v + v) * T::lit(0.5), step), v }
+            let v = s.v.add_scaled(integrator::Model::rate(point, step, &s), step);
+            State { q: s.q.add_scaled((s.v + v) * T::lit(0.5), step), v }
         }
         Scheme::PositionFirst | Scheme::Memory(_) => {
-            let q = s.q.plus(s.v, step);
-            State { q, v: s.v.plus(integrator::Model::rate(point, step, &State { q, v: s.v }), step) }
+            let q = s.q.add_scaled(s.v, step);
+            State { q, v: s.v.add_scaled(integrator::Model::rate(point, step, &State { q, v: s.v }), step) }
         }
     };
     if plan.damping.is_some_and(|d| d.when == When::Between && !d.rule.is_force()) {
         next.v = apply(plan.damping, When::Between, h, next.v);
         if plan.scheme == Scheme::Method(MethodId::SemiImplicitEuler) {
-            next.q = s.q.plus(next.v, step);
+            next.q = s.q.add_scaled(next.v, step);
         }
     }
     next.v = apply(plan.damping, When::After, h, next.v);

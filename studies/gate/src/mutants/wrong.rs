@@ -104,7 +104,7 @@ impl<M: Model<f64>> Method<f64, M> for WrongRk4 {
     fn step(&self, m: &M, t: f64, h: f64, s: State<M::Config>) -> State<M::Config> {
         let after = |part: f64| if self.stage_times { t + part * h } else { t };
         let bracket = |k, c: f64, a, b| if self.curvature { M::Config::plus_bracket(k, c * h, a, b) } else { k };
-        let stage = |w, a, part: f64| State { q: s.q.retract(w, part * h), v: s.v.plus(a, part * h) };
+        let stage = |w, a, part: f64| State { q: s.q.retract(w, part * h), v: s.v.add_scaled(a, part * h) };
         let (w1, a1) = (m.velocity(s.q, s.v), m.rate(t, &s));
         let s2 = stage(w1, a1, 0.5);
         let (w2, a2) = (m.velocity(s2.q, s2.v), m.rate(after(0.5), &s2));
@@ -112,9 +112,9 @@ impl<M: Model<f64>> Method<f64, M> for WrongRk4 {
         let (w3, a3) = (m.velocity(s3.q, s3.v), m.rate(after(0.5), &s3));
         let s4 = stage(w3, a3, 1.0);
         let (w4, a4) = (m.velocity(s4.q, s4.v), m.rate(after(1.0), &s4));
-        let w = bracket((w1 + w4).plus(w2 + w3, 2.0), -0.5, w1, w4);
-        let a = (a1 + a4).plus(a2 + a3, 2.0);
-        State { q: s.q.retract(w, h / 6.0), v: s.v.plus(a, h / 6.0) }
+        let w = bracket((w1 + w4).add_scaled(w2 + w3, 2.0), -0.5, w1, w4);
+        let a = (a1 + a4).add_scaled(a2 + a3, 2.0);
+        State { q: s.q.retract(w, h / 6.0), v: s.v.add_scaled(a, h / 6.0) }
     }
 }
 
@@ -147,8 +147,8 @@ pub(super) struct StaleForce;
 impl<M: Model<f64>> Method<f64, M> for StaleForce {
     fn step(&self, m: &M, t: f64, h: f64, s: State<M::Config>) -> State<M::Config> {
         let a0 = m.rate(t, &s);
-        let u = s.v.plus(a0, 0.5 * h);
-        State { q: s.q.retract(m.velocity(s.q, u), h), v: u.plus(a0, 0.5 * h) }
+        let u = s.v.add_scaled(a0, 0.5 * h);
+        State { q: s.q.retract(m.velocity(s.q, u), h), v: u.add_scaled(a0, 0.5 * h) }
     }
 }
 
@@ -165,7 +165,7 @@ impl<B: RigidBody<f64>, U: Update<Frame = integrator::pose::Body>> Method<f64, B
     ) -> State<Pose<f64, U, B::Position>> {
         let v = m.kick(t, h, &s);
         let attitude = Exponential::<World>::increment(v.angular, h) * s.q.attitude;
-        State { q: Pose::new(s.q.position.plus(v.linear, h), attitude), v }
+        State { q: Pose::new(s.q.position.add_scaled(v.linear, h), attitude), v }
     }
 }
 

@@ -1,4 +1,4 @@
-//! What can be bought: a rule of a step, on a rigid body with what is stored.
+//! The candidates of a comparison: a rule of a step, on a rigid body with what is stored.
 
 use integrator::methods::{MethodId, RigidStep};
 use integrator::rigid_body::{AttitudeUpdate, Formulation};

@@ -6,7 +6,7 @@ use reports::Claim;
 use super::candidate::Candidate;
 use super::comparison_tables::question_row;
 use super::rounding_optimum::{Minimum, minima};
-use super::verdict::duels;
+use super::verdict::comparisons;
 use super::{CostMeasure, Part, Row};
 use crate::claim::{self, Evidence};
 use crate::study::{distinct, short};
@@ -51,7 +51,7 @@ const MANY: usize = 10;
 
 /// Whether RK4 is worth its four evaluations: to an error E an order p needs about E^(-1/p) of them.
 fn question(rows: &[Row]) -> Option<Claim> {
-    let line = question_row(&duels(rows, CostMeasure::Evaluations), QUESTION, CostMeasure::Evaluations);
+    let line = question_row(&comparisons(rows, CostMeasure::Evaluations), QUESTION, CostMeasure::Evaluations);
     let (known, cheaper) = (line.rk4_known, line.rk4_beats_semi_implicit);
     let texts = [
         format!("at an error of {QUESTION} RK4 costs fewer evaluations than semi-implicit Euler on most scenes"),

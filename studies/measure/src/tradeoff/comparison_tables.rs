@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::candidate::Candidate;
 use super::cells::cost_measure_name;
 use super::cost_at_error::{CostBound, LEVELS};
-use super::verdict::{Between, Comparison, Factor, duels};
+use super::verdict::{Between, Comparison, Factor, comparisons};
 use super::{CostMeasure, Row};
 use crate::error::Error;
 use crate::study::{Derived, short};
@@ -29,16 +29,16 @@ pub(super) struct QuestionRow {
     pub(super) median_implicit_euler_over_semi_implicit: Option<f64>,
 }
 
-/// How often semi-implicit Euler is the best buy.
+/// How often semi-implicit Euler is the cheapest.
 pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     let mut lines = Vec::new();
     for charge in CostMeasure::ALL {
-        let all = duels(rows, charge);
+        let all = comparisons(rows, charge);
         lines.extend(LEVELS.map(|level| question_row(&all, level, charge)));
     }
     let [a, b, c, d, e] =
-        ["scenes", "best buy, or level", "cheaper than RK4", "RK4 costs, median", "cheaper than implicit Euler"];
-    let mut table = Table::new(&["error (m, rad)", "charged in", a, b, c, d, e], &["error (m, rad)", a, b, c, d, e]);
+        ["scenes", "cheapest, or level", "cheaper than RK4", "RK4 costs, median", "cheaper than implicit Euler"];
+    let mut table = Table::new(&["error (m, rad)", "cost in", a, b, c, d, e], &["error (m, rad)", a, b, c, d, e]);
     for line in &lines {
         table.push([
             format!("{:.0e}", line.error_level),
@@ -52,7 +52,7 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
     }
     Ok(Derived {
         name: "tradeoff-question",
-        caption: "Is semi-implicit Euler good enough? On how many scenes it is the best buy at an error, and beside RK4 and \
+        caption: "Is semi-implicit Euler good enough? On how many scenes it is the cheapest at an error, and beside RK4 and \
                   implicit Euler alone, where the sweeps reach far enough to tell; the price of RK4 as a part of its own, \
                   where the median is no bound",
         csv: reports::write_csv(&lines)?,
@@ -61,11 +61,11 @@ pub(super) fn question(rows: &[Row]) -> Result<Derived, Error> {
 }
 
 /// The same at one error, over the scenes on which it was reached.
-pub(super) fn question_row(duels: &[Comparison], error_level: f64, charge: CostMeasure) -> QuestionRow {
-    let duels: Vec<&Comparison> =
-        duels.iter().filter(|duel| duel.level == error_level && duel.best.is_some()).collect();
+pub(super) fn question_row(comparisons: &[Comparison], error_level: f64, charge: CostMeasure) -> QuestionRow {
+    let comparisons: Vec<&Comparison> =
+        comparisons.iter().filter(|comparison| comparison.level == error_level && comparison.best.is_some()).collect();
     let over = |of: fn(&Comparison) -> &CostBound| -> Vec<Between> {
-        let all = duels.iter().map(|duel| Between::of(of(duel), &duel.semi_implicit));
+        let all = comparisons.iter().map(|comparison| Between::of(of(comparison), &comparison.semi_implicit));
         all.filter(|factor| factor.beside_one().is_some()).collect()
     };
     let (rk4, implicit) = (over(|d| &d.rk4), over(|d| &d.implicit));
@@ -73,8 +73,11 @@ pub(super) fn question_row(duels: &[Comparison], error_level: f64, charge: CostM
     QuestionRow {
         error_level,
         charge,
-        scenes: duels.len(),
-        semi_implicit_is_best_or_level: duels.iter().filter(|duel| duel.semi_implicit_is_best()).count(),
+        scenes: comparisons.len(),
+        semi_implicit_is_best_or_level: comparisons
+            .iter()
+            .filter(|comparison| comparison.semi_implicit_is_best())
+            .count(),
         rk4_known: rk4.len(),
         semi_implicit_beats_rk4: count(&rk4, Ordering::Greater),
         rk4_beats_semi_implicit: count(&rk4, Ordering::Less),
@@ -96,7 +99,7 @@ fn median(factors: &[Between]) -> Option<f64> {
 }
 
 #[derive(Serialize)]
-struct DuelRow {
+struct ComparisonRow {
     scene: String,
     error_level: f64,
     charge: CostMeasure,
@@ -110,51 +113,53 @@ struct DuelRow {
     semi_implicit_over_best: String,
 }
 
-/// On each scene and at each error: is semi-implicit Euler the best buy, and if not, by what is it beaten?
+/// On each scene and at each error: is semi-implicit Euler the cheapest, and if not, by what is it beaten?
 pub(super) fn semi_implicit(rows: &[Row], charge: CostMeasure) -> Result<Derived, Error> {
-    let all = duels(rows, charge);
+    let all = comparisons(rows, charge);
     let cost = |offer: &CostBound| if let CostBound::At(price) = offer { Some(price.cost) } else { None };
-    let line = |duel: &Comparison| DuelRow {
-        scene: duel.scene.clone(),
-        error_level: duel.level,
+    let line = |comparison: &Comparison| ComparisonRow {
+        scene: comparison.scene.clone(),
+        error_level: comparison.level,
         charge,
-        semi_implicit: match &duel.semi_implicit {
+        semi_implicit: match &comparison.semi_implicit {
             CostBound::At(price) | CostBound::Above(price) => Some(price.cost),
             CostBound::Never => None,
         },
-        semi_implicit_is: match &duel.semi_implicit {
+        semi_implicit_is: match &comparison.semi_implicit {
             CostBound::At(_) => "met",
             CostBound::Above(_) => "more than this",
             CostBound::Never => "never",
         },
-        best: duel.best.as_ref().map(|best| best.cost),
-        best_method: duel.best.as_ref().map_or_else(String::new, |best| best.method.clone()),
-        best_precision: duel.best.as_ref().map(|best| best.precision),
-        rk4: cost(&duel.rk4),
-        implicit_euler: cost(&duel.implicit),
-        semi_implicit_over_best: duel.beaten_by().map_or_else(String::new, Factor::show),
+        best: comparison.best.as_ref().map(|best| best.cost),
+        best_method: comparison.best.as_ref().map_or_else(String::new, |best| best.method.clone()),
+        best_precision: comparison.best.as_ref().map(|best| best.precision),
+        rk4: cost(&comparison.rk4),
+        implicit_euler: cost(&comparison.implicit),
+        semi_implicit_over_best: comparison.beaten_by().map_or_else(String::new, Factor::show),
     };
     let headers = ["scene", "1e-1", "1e-2", "1e-3", "1e-4", "1e-6"];
     let mut table = Table::new(&headers, &[]);
     for of_scene in all.chunk_by(|a, b| a.scene == b.scene) {
         table.push(std::iter::once(of_scene[0].scene.clone()).chain(of_scene.iter().map(cell)));
     }
-    let lines: Vec<DuelRow> = all.iter().map(line).collect();
+    let lines: Vec<ComparisonRow> = all.iter().map(line).collect();
     let (name, caption) = match charge {
         CostMeasure::Evaluations => (
             "tradeoff-semi-implicit-evaluations",
-            "Semi-implicit Euler charged in evaluations: the best buy at this error (m, rad), or by what factor it is beaten, \
+            "Cost of semi-implicit Euler in evaluations: the cheapest at this error (m, rad), or by what factor it is beaten, \
              and by what",
         ),
-        CostMeasure::Time => ("tradeoff-semi-implicit-time", "The same charged in time on this machine"),
+        CostMeasure::Time => ("tradeoff-semi-implicit-time", "The same in time on this machine"),
     };
     Ok(Derived { name, caption, csv: reports::write_csv(&lines)?, table })
 }
 
-fn cell(duel: &Comparison) -> String {
-    let Some((best, factor)) = duel.best.as_ref().zip(duel.beaten_by()) else { return "none reaches it".to_owned() };
-    if duel.semi_implicit_is_best() {
-        return "best buy".to_owned();
+fn cell(comparison: &Comparison) -> String {
+    let Some((best, factor)) = comparison.best.as_ref().zip(comparison.beaten_by()) else {
+        return "none reaches it".to_owned();
+    };
+    if comparison.semi_implicit_is_best() {
+        return "cheapest".to_owned();
     }
     let title = Candidate::from_id(&best.method).map_or_else(String::new, |c| match c.method() {
         Some(method) => method.title().to_owned(),

@@ -47,14 +47,14 @@ fn work(sweeps: &[Vec<&Row>], charge: CostMeasure) -> Option<Figure> {
             "evaluations",
             "error against evaluations",
             "evaluations of the force up to the horizon",
-            "Lower is cheaper, further left is more accurate: the lowest line at an error is the best buy. Counted exactly, in \
+            "Lower is cheaper, further left is more accurate: the lowest line at an error is the cheapest. Counted exactly, in \
              f64. A method without any error on this scene has no line.",
         ),
         CostMeasure::Time => (
             "time",
             "error against time",
             "time for a simulated second (ns)",
-            "The same charged in time, least over the rounds, with a whisker up to the upper quartile: what a step costs beside \
+            "The same in time, least over the rounds, with a whisker up to the upper quartile: what a step costs beside \
              its evaluations counts too. Of this machine and this run. A method without any error on this scene has no line.",
         ),
     };

@@ -130,10 +130,10 @@ impl Study for Tradeoff {
         tradeoff --scene kepler --error 1e-3 --of energy               an error in the energy instead of the position
         tradeoff --ensemble 1000 --scene torque-free-spin              errors over many starts instead of one";
     const TITLE: &'static str = "What does accuracy cost? Work-precision";
-    const INTRO: &'static str = "Every method, in three precisions and on rigid bodies with what is stored, is charged for its \
-        error twice: in evaluations of the force law, which are counted and the same on every machine, and in time, which was \
-        measured on this one, apart from the runs that gave the errors. The error is the largest at 32 times up to the horizon, of \
-        positions in m and of angles in rad.";
+    const INTRO: &'static str = "The cost of every method at its error, in three precisions and, on rigid bodies, for what is stored. \
+        Cost is counted in evaluations of the force law, which are the same on every machine, and measured in time on this machine, \
+        in runs apart from those that gave the errors. The error is the largest at 32 times up to the horizon, of positions in m and \
+        of angles in rad.";
 
     const KINDS: &'static [Kind] = &[
         Kind {
@@ -219,7 +219,7 @@ impl Row {
     }
 }
 
-/// What a run is charged in.
+/// What a run costs in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CostMeasure {
@@ -233,7 +233,7 @@ impl CostMeasure {
     /// Both.
     pub const ALL: [CostMeasure; 2] = [CostMeasure::Evaluations, CostMeasure::Time];
 
-    /// What a run costs. Evaluations do not know what arithmetic costs: only f64 is charged in them.
+    /// What a run costs. Evaluations do not know what arithmetic costs: only f64 costs in them.
     pub fn of(self, row: &Row) -> Option<f64> {
         match self {
             CostMeasure::Evaluations => (row.precision == Precision::F64).then_some(row.evaluations as f64),

@@ -56,7 +56,7 @@ fn cost_at_error(rows: &[Row]) -> Result<Derived, Error> {
             }
         }
     }
-    let headers = ["scene", "error (m, rad)", "charged in", "cheapest", "step (s)", "price", "next", "times as much"];
+    let headers = ["scene", "error (m, rad)", "cost in", "cheapest", "step (s)", "price", "next", "times as much"];
     let mut table = Table::new(&headers, &["error (m, rad)", "step (s)", "price", "times as much"]);
     for line in &lines {
         let at_most = if line.is_at_most { "≤ " } else { "" };
@@ -128,7 +128,7 @@ struct FrontRow {
 fn fronts(rows: &[Row]) -> Result<Derived, Error> {
     let runs = runs(rows);
     let mut lines: Vec<FrontRow> = Vec::new();
-    let headers = ["scene", "charged in", "errors of", "down to", "cheapest"];
+    let headers = ["scene", "cost in", "errors of", "down to", "cheapest"];
     let mut table = Table::new(&headers, &["errors of", "down to"]);
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();

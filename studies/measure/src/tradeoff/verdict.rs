@@ -16,7 +16,7 @@ pub struct Comparison {
     pub scene: String,
     /// The level, m or rad.
     pub level: f64,
-    /// What is charged.
+    /// The measure of cost.
     pub charge: CostMeasure,
     /// Semi-implicit Euler.
     pub semi_implicit: CostBound,
@@ -31,15 +31,15 @@ pub struct Comparison {
 /// Prices within this factor of each other are level: times have noise, and prices are interpolated.
 pub const LEVEL_WITH: f64 = 1.1;
 
-/// Every level on every scene, charged one way.
-pub fn duels(rows: &[Row], charge: CostMeasure) -> Vec<Comparison> {
+/// Every level on every scene, by one measure of cost.
+pub fn comparisons(rows: &[Row], charge: CostMeasure) -> Vec<Comparison> {
     let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
-    let mut duels = Vec::new();
+    let mut comparisons = Vec::new();
     for scene in distinct(runs.iter().map(|row| row.scene.as_str())) {
         let of_scene: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == scene).collect();
         for level in LEVELS {
             let of = |method: MethodId| of_rule(&of_scene, level, charge, method.id());
-            duels.push(Comparison {
+            comparisons.push(Comparison {
                 scene: scene.to_owned(),
                 level,
                 charge,
@@ -50,7 +50,7 @@ pub fn duels(rows: &[Row], charge: CostMeasure) -> Vec<Comparison> {
             });
         }
     }
-    duels
+    comparisons
 }
 
 /// By what factor an offer is dearer than another; only a lower bound where its sweep ends above the level.
@@ -111,7 +111,7 @@ impl Comparison {
         factor(&self.semi_implicit, &CostBound::At(self.best.clone()?))
     }
 
-    /// Whether semi-implicit Euler is the best buy, or level with it.
+    /// Whether semi-implicit Euler is the cheapest, or level with it.
     pub fn semi_implicit_is_best(&self) -> bool {
         matches!(self.beaten_by(), Some(Factor::Of(factor)) if factor <= LEVEL_WITH)
     }

@@ -12,11 +12,11 @@ pub(super) struct Expansion(Vec<f64>);
 impl Expansion {
     /// The exact sum of two numbers.
     pub(super) fn sum(a: f64, b: f64) -> Self {
-        Self::default().plus(a).plus(b)
+        Self::default().add_scaled(a).add_scaled(b)
     }
 
     /// GROW-EXPANSION: the exact sum with one more f64, zeros dropped.
-    fn plus(self, b: f64) -> Self {
+    fn add_scaled(self, b: f64) -> Self {
         let mut carry = b;
         let mut parts = Vec::with_capacity(self.0.len() + 1);
         for part in self.0 {
@@ -38,13 +38,13 @@ impl Expansion {
     pub(super) fn times(&self, b: f64) -> Self {
         self.0.iter().fold(Self::default(), |sum, &part| {
             let product = part * b;
-            sum.plus(part.mul_add(b, -product)).plus(product)
+            sum.add_scaled(part.mul_add(b, -product)).add_scaled(product)
         })
     }
 
     /// The exact difference.
     pub(super) fn minus(&self, other: &Self) -> Self {
-        other.0.iter().fold(self.clone(), |sum, &part| sum.plus(-part))
+        other.0.iter().fold(self.clone(), |sum, &part| sum.add_scaled(-part))
     }
 
     /// The value rounded to double-double, relative error below 2^-104.

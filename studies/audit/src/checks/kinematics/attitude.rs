@@ -97,7 +97,7 @@ fn attitude_rule(t: &Trajectory, clock: &Clock, tolerance: f64) -> Option<(&'sta
     let turn = |q: [f64; 4], w: Vector3<f64>, h: f64, rule: usize| -> [f64; 4] {
         let q = integrator::Rotation { w: q[0], v: Vector3::new(q[1], q[2], q[3]) };
         let d = if rule == 0 {
-            integrator::Rotation::turned(w, h)
+            integrator::Rotation::from_rotation_vector(w, h)
         } else {
             integrator::Rotation { w: 1.0, v: w * (h / 2.0) }
         };

@@ -194,12 +194,12 @@ pub(in crate::step) fn munthe_kaas<T: Single>(model: &Bare, h: T, s: State<Vecto
     let zero = Vector3::repeat(T::lit(0.0));
     let slope = |u: Vector3<T>, v: Vector4<T>| (dexp_inverse(u, omega(v)), model.rate(h, &at(u, v)));
     let (k1, a1) = slope(zero, s.v);
-    let (k2, a2) = slope(k1 * half, s.v.plus(a1, half));
-    let (k3, a3) = slope(k2 * half, s.v.plus(a2, half));
-    let (k4, a4) = slope(k3 * h, s.v.plus(a3, h));
+    let (k2, a2) = slope(k1 * half, s.v.add_scaled(a1, half));
+    let (k3, a3) = slope(k2 * half, s.v.add_scaled(a2, half));
+    let (k4, a4) = slope(k3 * h, s.v.add_scaled(a3, h));
     let (two, sixth) = (T::lit(2.0), h / T::lit(6.0));
     let u = (k1 + k4 + (k2 + k3) * two) * sixth;
-    at(u, s.v.plus((a1 + a4).plus(a2 + a3, two), sixth))
+    at(u, s.v.add_scaled((a1 + a4).add_scaled(a2 + a3, two), sixth))
 }
 
 fn run_raw<T: Single>(plan: RawPlan, start: &Kin, h: f64, k: u64, rows: u64) -> Vec<Kin> {
@@ -255,7 +255,7 @@ fn run_raw<T: Single>(plan: RawPlan, start: &Kin, h: f64, k: u64, rows: u64) -> 
             if plan.damping.is_some_and(|d| d.when == When::Between && !d.rule.is_force()) {
                 s.v = damp(When::Between, s.v);
                 if plan.scheme == RawScheme::Method(MethodId::SemiImplicitEuler) {
-                    s.q = before.q.plus(model.velocity(before.q, s.v), step);
+                    s.q = before.q.add_scaled(model.velocity(before.q, s.v), step);
                 }
             }
             s.v = damp(When::After, s.v);
