@@ -109,8 +109,14 @@ const REACH: f64 = 1024.0;
 pub(super) const LONG_REACH: f64 = 1_048_576.0;
 /// A rate below this is none.
 const FLAT: f64 = 0.2;
+/// Rates that fall to this part of the largest lead to none.
+const LEVELLING: f64 = 0.4;
 /// Rates that agree differ by less.
 const AGREE: f64 = 0.1;
+/// Rates of a settling sweep change by less from pair to pair.
+const STEADY: f64 = 0.4;
+/// An error is off the line of its neighbours by this factor or more.
+const OFF: f64 = 1.5;
 /// Rates by an error near its zero are this far from the order on either side.
 const DIP: f64 = 0.7;
 
@@ -166,26 +172,26 @@ impl Errors<'_> {
         Some(TroubleKind::SignChange.with(evidence))
     }
 
-    /// One row between others, without which all rates agree.
+    /// One row between others that is off their line, where the rates of the others change by little from pair to pair.
     fn bad_run(&self) -> Option<Trouble> {
-        let n = self.h.len();
-        let spread = |rates: &[f64]| {
-            rates.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - rates.iter().fold(f64::INFINITY, |a, b| a.min(*b))
-        };
-        if n < 5 || spread(&self.rates()) < 3.0 * AGREE {
+        let is_clear = |i: &usize| self.signed[*i].is_some_and(|e| e.abs() > REACH * self.unit);
+        let clear: Vec<usize> = (0..self.h.len()).filter(is_clear).collect();
+        if clear.len() < 5 {
             return None;
         }
-        (1..n - 1).find_map(|bad| {
-            let kept: Vec<usize> = (0..n).filter(|i| *i != bad).collect();
+        (1..clear.len() - 1).find_map(|at| {
+            let (bad, before, after) = (clear[at], clear[at - 1], clear[at + 1]);
+            let kept: Vec<usize> = clear.iter().copied().filter(|i| *i != bad).collect();
             let rates = kept.windows(2).map(|w| self.rate(w[0], w[1])).collect::<Option<Vec<f64>>>()?;
-            let mean = rates.iter().sum::<f64>() / rates.len() as f64;
-            if spread(&rates) > AGREE || mean < FLAT {
+            let is_steady = rates.windows(2).all(|w| (w[0] - w[1]).abs() < STEADY);
+            let rate = self.rate(before, after)?;
+            let e = self.signed[bad]?.abs();
+            let expected = self.signed[before]?.abs() * (self.h[bad] / self.h[before]).powf(rate);
+            if !is_steady || rate < FLAT || (e / expected).ln().abs() < OFF.ln() {
                 return None;
             }
-            let e = self.signed[bad]?.abs();
-            let expected = self.signed[bad - 1]?.abs() * (self.h[bad] / self.h[bad - 1]).powf(mean);
             let evidence = format!(
-                "without the row at {:.4e} every rate is {mean:.2}; its error is {e:.3e} where the others give {expected:.3e}",
+                "the row at {:.4e} has the error {e:.3e} where its neighbours give {expected:.3e}; without it the rates are steady, {rate:.2} there",
                 self.h[bad]
             );
             Some(TroubleKind::BadRun.with(evidence))
@@ -239,11 +245,20 @@ impl Errors<'_> {
         let n = self.h.len();
         let flat = (1..n).rev().take_while(|i| self.rate(i - 1, *i).is_some_and(|p| p.abs() < FLAT)).count();
         let at = self.signed.last().copied()??.abs();
-        if flat == 0 || at <= REACH * self.unit || at >= self.saturation {
+        if at <= REACH * self.unit || at >= self.saturation {
             return None;
         }
-        // A single flat pair after steady rates is as likely one run.
-        if flat == 1 && n > 2 && self.window.is_some_and(|(_, last)| last + 1 == n) {
+        let rates = self.rates();
+        let falls = rates.last_chunk().is_some_and(|[a, b, c]| a > b && b > c);
+        let largest = rates.iter().copied().fold(0.0, f64::max);
+        if flat == 0 {
+            let last = rates.last().copied().filter(|last| falls && *last < LEVELLING * largest)?;
+            let evidence =
+                format!("the rates fall from {largest:.2} to {last:.2}: the error levels off below {at:.3e}");
+            return Some(TroubleKind::ModelError.with(evidence));
+        }
+        // A single flat pair after steady rates is as likely one run; after rates that fall it is where they lead.
+        if flat == 1 && n > 2 && !falls && self.window.is_some_and(|(_, last)| last + 1 == n) {
             return None;
         }
         let before = if flat + 1 < n {
