@@ -52,7 +52,8 @@ pub struct Theory {
     pub constant: Option<f64>,
     /// How far the constant may be off by the rounding of its formula.
     pub doubt: f64,
-    /// The step below which the constant of an envelope bounds the error, s: larger steps may move an event past the end.
+    /// The step below which the constant of an envelope bounds the error, or an exact result holds, s: larger steps may move an event
+    /// past the end.
     pub below_h_s: f64,
     /// Where it comes from, or why it is not the method's own order.
     pub reason: &'static str,

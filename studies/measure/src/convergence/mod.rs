@@ -74,7 +74,7 @@ pub struct Row {
     pub theory_constant: Option<f64>,
     /// How far it may be off by the rounding of its formula.
     pub theory_doubt: f64,
-    /// The step below which the bound of an envelope holds, s; empty for no limit.
+    /// The step below which the bound of an envelope, or an exact result, holds, s; empty for no limit.
     #[serde(default)]
     pub theory_below_h_s: Option<f64>,
     /// The same limit by the equation of first variation, in double-double, for the methods whose local error it knows.

@@ -71,7 +71,8 @@ fn order_of(sweep: &[&Row], measure: Measure) -> OrderRow {
     let operations = if first.theory_order.is_none() { first.steps as f64 } else { 1.0 };
     let limits = Limits { rounding_unit: operations * unit, saturation: scale };
     // With steps beyond its stability limit a method multiplies roundings even of a motion that it has exactly.
-    let unstable = samples.iter().take_while(|s| s.h_s > first.time_scale_s).count();
+    let longest = first.theory_below_h_s.unwrap_or(f64::INFINITY).min(first.time_scale_s);
+    let unstable = samples.iter().take_while(|s| s.h_s > longest).count();
     let judged = match expected {
         Expected::Exact if samples.len() - unstable >= 3 => &samples[unstable..],
         _ => &samples[..],

@@ -216,6 +216,12 @@ impl BouncingBall {
         0.5 * shortest / late
     }
 
+    /// The step below which a ball that is too low by g t h / 2 does not bounce before the horizon either, s; half of it.
+    fn unbounced_below_s(&self, end_s: f64) -> f64 {
+        let first_s = self.flight().times(Scaled::of_wide(self.first_flight())).value().to_f64();
+        self.impact_speed().to_f64() * (first_s - end_s) / (self.gravity * end_s)
+    }
+
     /// The largest |error| / h over all phases of the bounces in their steps.
     fn envelope(&self, lag: f64, end_s: f64) -> [f64; 2] {
         let (none, each) = self.first_order(lag, end_s);
@@ -345,7 +351,10 @@ impl Scene for BouncingBall {
     fn theory(&self, method: MethodId, quantity: Quantity, end_s: f64) -> Theory {
         if self.nonsmooth_times_s(end_s).is_empty() {
             return match (lag(method), quantity) {
-                (0.0, _) | (_, Quantity::Velocity) => Theory::exact("no bounce: v is linear in t, x a parabola"),
+                (0.0, _) | (_, Quantity::Velocity) => Theory {
+                    below_h_s: self.unbounced_below_s(end_s),
+                    ..Theory::exact("no bounce: v is linear in t, x a parabola")
+                },
                 _ => Theory::with_constant(
                     method,
                     0.5 * self.gravity * end_s,
