@@ -36,7 +36,7 @@ const LINES: [(&str, &str, &str); 9] = [
     (CATALOGUE, "pub use oscillator::Oscillator;\n", "pub use oscillator_in_four::OscillatorInFour;\n"),
     (
         CATALOGUE,
-        "    \"oscillator/decimal\" => Particles(Oscillator::decimal());\n",
+        "    \"spring-chain\" => Particles(SpringChain::default());\n",
         "    \"oscillator-in-four\" => Particles(OscillatorInFour::default());\n",
     ),
 ];

@@ -17,7 +17,7 @@ fn rows() -> &'static [Row] {
             schemes: Vec::new(),
             precisions: Precision::ALL.to_vec(),
             steps: Vec::new(),
-            end_s: None,
+            length: None,
             quick: false,
             draws: Default::default(),
             progress: Progress::silent(),

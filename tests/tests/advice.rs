@@ -3,7 +3,7 @@
 use integrator::methods::MethodId;
 use scenes::run::Precision;
 
-use measure::study::Selection;
+use measure::study::{Length, Selection};
 use measure::sweep::Progress;
 use measure::tradeoff::advice::{Advice, Question, advise};
 use measure::tradeoff::candidate::candidates;
@@ -19,7 +19,7 @@ fn selection(id: &str) -> Selection {
         schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: false,
         draws: Default::default(),
         progress: Progress::silent(),
@@ -76,7 +76,8 @@ fn rounding_and_too_many_steps_are_told_apart() {
 #[test]
 fn advice_in_frames_takes_whole_substeps_and_budgets_are_kept_by_counting() {
     let chosen = selection("tennis-racket");
-    let question = Question { error: Some(1e-3), duration_s: Some(4.0), rate_hz: Some(60.0), ..Question::default() };
+    let question =
+        Question { error: Some(1e-3), length: Some(Length::Seconds(4.0)), rate_hz: Some(60.0), ..Question::default() };
     let advice = advise(&chosen, question).expect("a good question");
     let pick = advice.picks[0].expect("it can be had");
     assert!(advice.possible && pick.tried.steps.is_multiple_of(240));
@@ -100,7 +101,7 @@ fn a_question_without_sense_is_refused_with_its_remedy() {
         (Question { error: Some(-1.0), ..good }, true, "--error"),
         (Question { error: Some(f64::NAN), ..good }, true, "--error"),
         (Question { rate_hz: Some(0.0), ..good }, true, "--rate"),
-        (Question { duration_s: Some(f64::INFINITY), ..good }, true, "--for"),
+        (Question { length: Some(Length::Seconds(f64::INFINITY)), ..good }, true, "--for"),
         (Question { budget_us: Some(-5.0), ..good }, true, "--budget-us"),
         (good, false, "--scene pendulum"),
         (Question { error: None, rate_hz: Some(60.0), ..good }, true, "--error 1e-3"),
@@ -110,7 +111,7 @@ fn a_question_without_sense_is_refused_with_its_remedy() {
         assert!(message.contains(word), "{question:?}: {message}");
     }
     assert!(good.check(true).is_ok());
-    let long = Question { duration_s: Some(1e6), rate_hz: Some(1e3), ..good };
+    let long = Question { length: Some(Length::Seconds(1e6)), rate_hz: Some(1e3), ..good };
     assert!(advise(&selection("pendulum"), long).expect_err("refused").to_string().contains("shorten --for"));
 }
 
@@ -122,7 +123,7 @@ fn asked(id: &str, methods: &[MethodId], precision: Precision, question: Questio
 // Explicit Euler keeps 0.3 m over a second and has no stable step: a loop of frames goes on, a run of a second does not.
 #[test]
 fn a_loop_of_frames_is_not_advised_a_step_that_is_not_stable() {
-    let second = Question { error: Some(0.3), duration_s: Some(1.0), ..Question::default() };
+    let second = Question { error: Some(0.3), length: Some(Length::Seconds(1.0)), ..Question::default() };
     let frames = Question { rate_hz: Some(60.0), ..second };
     let euler = |question| asked("oscillator", &[MethodId::ExplicitEuler], Precision::F64, question);
     let refused = euler(frames);
@@ -141,7 +142,8 @@ fn a_loop_of_frames_is_not_advised_a_step_that_is_not_stable() {
 // omega = 4 / s at one frame a second: a step of semi-implicit Euler is stable up to h = 2 / omega.
 #[test]
 fn a_loop_of_frames_is_cut_into_stable_substeps() {
-    let question = Question { error: Some(1e3), duration_s: Some(40.0), rate_hz: Some(0.1), ..Question::default() };
+    let question =
+        Question { error: Some(1e3), length: Some(Length::Seconds(40.0)), rate_hz: Some(0.1), ..Question::default() };
     let pick =
         asked("oscillator", &[MethodId::SemiImplicitEuler], Precision::F64, question).picks[0].expect("it can be had");
     assert!(pick.limit.allows(pick.h_s) && pick.tried.steps.is_multiple_of(4), "{pick:?}");
@@ -150,7 +152,7 @@ fn a_loop_of_frames_is_cut_into_stable_substeps() {
 // 1e-18 is below the rounding of every arithmetic that is tried; RK4 in f64 comes nearest.
 #[test]
 fn a_refusal_names_the_arithmetic_that_came_nearest() {
-    let question = Question { error: Some(1e-18), duration_s: Some(2.0), ..Question::default() };
+    let question = Question { error: Some(1e-18), length: Some(Length::Seconds(2.0)), ..Question::default() };
     let all =
         Selection { methods: vec![MethodId::Rk4], precisions: Precision::ALL.to_vec(), ..selection("oscillator") };
     let text = advise(&all, question).expect("a good question").text;
@@ -165,7 +167,7 @@ fn a_refusal_names_the_arithmetic_that_came_nearest() {
 fn the_finer_steps_counted_are_those_that_were_tried() {
     // Half of 2 steps: 1.04 x 1 .. 2 x 1 are all 2, 2.83 x 1 is 3 and 4 x 1 is 4.
     assert_eq!(finer(1, 2), [2, 3, 4]);
-    let question = Question { error: Some(0.3), duration_s: Some(1.0), ..Question::default() };
+    let question = Question { error: Some(0.3), length: Some(Length::Seconds(1.0)), ..Question::default() };
     let advice = asked("oscillator", &[MethodId::Rk4], Precision::F64, question);
     let pick = advice.picks[0].expect("it can be had");
     assert!(

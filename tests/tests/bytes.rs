@@ -22,7 +22,7 @@ fn rows<S: Study>(scene: &str) -> String {
         schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         draws: Default::default(),
         quick: true,
         progress: Progress::silent(),

@@ -17,7 +17,7 @@ fn everything(precisions: &[Precision]) -> Selection {
         schemes: Vec::new(),
         precisions: precisions.to_vec(),
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: false,
         draws: Default::default(),
         progress: Progress::silent(),

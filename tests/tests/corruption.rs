@@ -25,7 +25,7 @@ fn selection() -> Selection {
         schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -176,7 +176,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
         schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: steps.to_vec(),
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -10,7 +10,7 @@ use scenes::invariants::Invariant;
 use scenes::observation::{Observation, Quantity};
 use scenes::run::{Outcome, Precision, Run, Shown};
 
-use measure::study::Selection;
+use measure::study::{Length, Selection};
 use measure::sweep::Progress;
 use measure::tradeoff::advice::{Question, advise};
 use measure::tradeoff::candidate::{Candidate, candidates};
@@ -150,7 +150,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
         schemes: Vec::new(),
         precisions: vec![precision],
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: false,
         draws: Default::default(),
         progress: Progress::silent(),
@@ -164,7 +164,7 @@ const STIFF: [(&str, &str); 5] =
 // Fails if: the largest error is that of 64 samples (1540 steps, 0.18 m over all).
 #[test]
 fn an_error_between_the_samples_counts() {
-    let question = Question { error: Some(1e-3), duration_s: Some(60.0), ..Question::default() };
+    let question = Question { error: Some(1e-3), length: Some(Length::Seconds(60.0)), ..Question::default() };
     let asked = |question| {
         let chosen = selection(scene("damped-oscillator", &STIFF), MethodId::SemiImplicitEuler, Precision::F64);
         advise(&chosen, question).expect("a good question").picks[0].expect("it can be reached")
@@ -246,7 +246,7 @@ fn what_has_no_error_is_refused() {
     let question = Question { error: Some(1e-3), ..Question::default() };
     let ask =
         |scene, question| advise(&selection(scene, MethodId::Rk4, Precision::F64), question).map(|advice| advice.text);
-    let second = Question { duration_s: Some(1.0), ..question };
+    let second = Question { length: Some(Length::Seconds(1.0)), ..question };
     let driven = ask(scene("forced-oscillator", &[("drive", "1e200")]), second);
     assert!(!matches!(&driven, Ok(text) if text.contains("met")), "{driven:?}");
     let refused = ask(scene("pendulum", &[]), Question { of: Of::Invariant(Invariant::Momentum), ..question });

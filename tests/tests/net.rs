@@ -141,7 +141,7 @@ fn selection(scene: Box<dyn AnyScene>, precision: Precision) -> Selection {
         schemes: Vec::new(),
         precisions: vec![precision],
         steps: (0..=8).map(|k| coarsest << k).collect(),
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -24,7 +24,7 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
         schemes: Vec::new(),
         precisions: vec![Precision::DoubleDouble],
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: false,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -204,7 +204,7 @@ fn every_claim_of_a_quick_study_holds() {
         schemes: Vec::new(),
         precisions: vec![Precision::F64],
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -18,7 +18,7 @@ fn selection() -> Selection {
         schemes: Vec::new(),
         precisions: vec![Precision::F32, Precision::F64, Precision::DoubleDouble],
         steps: vec![64, 100, 32],
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

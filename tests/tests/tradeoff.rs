@@ -28,7 +28,7 @@ fn selection(ids: &[&str]) -> Selection {
         schemes: Vec::new(),
         precisions: Precision::ALL.to_vec(),
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         quick: false,
         draws: Default::default(),
         progress: Progress::silent(),

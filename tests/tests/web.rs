@@ -189,7 +189,7 @@ fn selection() -> Selection {
         precisions: Precision::ALL.to_vec(),
         // With 2 steps some of the implicit ones are not solved.
         steps: vec![2, 64],
-        end_s: None,
+        length: None,
         quick: true,
         draws: Default::default(),
         progress: Progress::silent(),

@@ -23,14 +23,46 @@ pub struct Selection {
     pub precisions: Vec<Precision>,
     /// The numbers of steps of a sweep, in increasing order; empty for the halvings that each scene suggests.
     pub steps: Vec<u64>,
-    /// The length of a run, s; `None` for the horizon of each scene.
-    pub end_s: Option<f64>,
+    /// The length of a run; `None` for the horizon of each scene.
+    pub length: Option<Length>,
     /// The starts of an ensemble.
     pub draws: Draws,
     /// Fewer and shorter runs.
     pub quick: bool,
     /// The bar to be shown.
     pub progress: Progress,
+}
+
+/// The length of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Length {
+    /// In seconds.
+    Seconds(f64),
+    /// In periods of the scene: see [`scenes::scene::Scene::period_s`].
+    Periods(f64),
+}
+
+impl Length {
+    /// The number, of whatever it counts.
+    pub fn number(self) -> f64 {
+        match self {
+            Length::Seconds(x) | Length::Periods(x) => x,
+        }
+    }
+
+    /// The end of such a run of a scene, s.
+    ///
+    /// # Errors
+    /// A scene without a period.
+    pub fn end_s(self, scene: &dyn AnyScene) -> Result<f64, Error> {
+        match self {
+            Length::Seconds(s) => Ok(s),
+            Length::Periods(n) => scene.scene().period_s().map(|period_s| n * period_s).ok_or_else(|| {
+                let message = format!("{} has no period of its own; give seconds, such as 60", scene.id());
+                Error::plan("--for", message)
+            }),
+        }
+    }
 }
 
 /// How many starts of a scene are drawn, and from which seed.
@@ -54,7 +86,12 @@ const MOST_STEPS: u64 = 1 << 22;
 impl Selection {
     /// The end of an error run of a scene, s.
     pub fn end_s(&self, scene: &dyn AnyScene) -> f64 {
-        self.end_s.unwrap_or(scene.scene().info().horizon_s)
+        self.given_end_s(scene).unwrap_or(scene.scene().info().horizon_s)
+    }
+
+    /// The end of a run of a scene, s, where a length is given and the scene has its unit.
+    pub fn given_end_s(&self, scene: &dyn AnyScene) -> Option<f64> {
+        self.length.and_then(|length| length.end_s(scene).ok())
     }
 
     /// The numbers of steps of an error sweep: those asked for, or the halvings from the scene's coarsest step.

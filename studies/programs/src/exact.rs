@@ -159,7 +159,7 @@ pub fn case(scene: &dyn AnyScene) -> Json {
     json!({
         "format": 1,
         "scene": scene.id(),
-        "about": info.about,
+        "about": scenes::about(scene),
         "equation_latex": info.equation,
         "exact_motion": info.source,
         "parameters": parameters,

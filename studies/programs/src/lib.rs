@@ -11,3 +11,4 @@ pub mod provenance;
 mod reference;
 pub mod summary;
 pub mod teach;
+pub mod units;

@@ -1,5 +1,6 @@
 //! What is run. The same keys on the command line, in a plan file and in a report's manifest.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use clap::Args;
@@ -10,8 +11,10 @@ use measure::error::Error;
 use scenes::any::AnyScene;
 use scenes::run::{Precision, method_from_id};
 use scenes::scheme::Scheme;
+use scenes::settings;
 
-use measure::study::{Draws, Selection, distinct};
+use crate::units;
+use measure::study::{Draws, Length, Selection, distinct};
 use measure::sweep::Progress;
 
 /// All that decides the numbers of a run, and nothing else: the same plan gives the same bytes, but for times. An empty list
@@ -32,7 +35,7 @@ pub struct Plan {
     #[arg(long, value_name = "ID")]
     pub precision: Vec<String>,
 
-    /// Set a parameter of every chosen scene that has it; may be given again
+    /// Set a parameter of every chosen scene that has it, as zeta=0.2 or c=0.8; may be given again
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
 
@@ -40,10 +43,10 @@ pub struct Plan {
     #[arg(long, value_name = "N,N,..", value_delimiter = ',', value_parser = steps, allow_hyphen_values = true)]
     pub steps: Vec<u64>,
 
-    /// Length of a run, s [default: the scene's horizon]
-    #[arg(long = "for", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    /// Length of a run: seconds, 2min, or 100rev of the scene's own period [default: the scene's horizon]
+    #[arg(long = "for", value_name = "TIME", value_parser = length, allow_hyphen_values = true)]
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub for_s: Option<Seconds>,
+    pub length: Option<RunLength>,
 
     /// Members of an ensemble [default: 256]
     #[arg(long, value_name = "N", value_parser = members, allow_hyphen_values = true)]
@@ -75,31 +78,54 @@ fn steps(text: &str) -> Result<u64, String> {
     text.trim().parse().ok().filter(|&n| n > 0).ok_or_else(|| format!("not a number of steps; {STEPS_REMEDY}"))
 }
 
-/// A length of time, s: positive and finite.
+/// The length of a run, positive and finite: a number of seconds, or a text with a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "f64", into = "f64")]
-pub struct Seconds(f64);
+#[serde(try_from = "LengthText", into = "LengthText")]
+pub struct RunLength(pub Length);
+
+/// A length as a plan file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged, expecting = "the length of a run is a number of seconds, or a text such as \"100rev\"")]
+enum LengthText {
+    Seconds(f64),
+    Text(String),
+}
 
 /// Positive and finite numbers are equal to themselves.
-impl Eq for Seconds {}
+impl Eq for RunLength {}
 
-const SECONDS_REMEDY: &str = "not a length of time; give seconds above 0, such as 2.5";
+const LENGTH_REMEDY: &str = "seconds above 0, such as 2.5, or 2min, or 100rev";
 
-impl TryFrom<f64> for Seconds {
+impl TryFrom<LengthText> for RunLength {
     type Error = String;
-    fn try_from(s: f64) -> Result<Self, String> {
-        if s.is_finite() && s > 0.0 { Ok(Seconds(s)) } else { Err(SECONDS_REMEDY.to_owned()) }
+    fn try_from(text: LengthText) -> Result<Self, String> {
+        match text {
+            LengthText::Seconds(s) => length(&s.to_string()),
+            LengthText::Text(text) => length(&text),
+        }
     }
 }
 
-impl From<Seconds> for f64 {
-    fn from(Seconds(s): Seconds) -> f64 {
-        s
+impl From<RunLength> for LengthText {
+    fn from(RunLength(length): RunLength) -> Self {
+        match length {
+            Length::Seconds(s) => LengthText::Seconds(s),
+            Length::Periods(n) => LengthText::Text(format!("{n}rev")),
+        }
     }
 }
 
-fn seconds(text: &str) -> Result<Seconds, String> {
-    text.trim().parse::<f64>().map_err(|_| SECONDS_REMEDY.to_owned())?.try_into()
+impl std::fmt::Display for RunLength {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            Length::Seconds(s) => write!(f, "{s}"),
+            Length::Periods(n) => write!(f, "{n}rev"),
+        }
+    }
+}
+
+fn length(text: &str) -> Result<RunLength, String> {
+    units::length(text, LENGTH_REMEDY).map(RunLength)
 }
 
 /// The head of every plan file that is written.
@@ -125,7 +151,7 @@ impl Plan {
     }
 
     fn keys() -> &'static str {
-        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds), members, seed (whole numbers) and quick (true or false)"
+        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds, or a text as \"100rev\"), members, seed (whole numbers) and quick (true or false)"
     }
 
     /// The plan as TOML.
@@ -153,7 +179,7 @@ impl Plan {
             precision: either(flags.precision, self.precision),
             set: kept.chain(flags.set.iter().cloned()).collect(),
             steps: either(flags.steps, self.steps),
-            for_s: flags.for_s.or(self.for_s),
+            length: flags.length.or(self.length),
             members: flags.members.or(self.members),
             seed: flags.seed.or(self.seed),
             quick: self.quick || flags.quick,
@@ -168,7 +194,7 @@ impl Plan {
         let given = [
             ("precision", !self.precision.is_empty()),
             ("steps", !self.steps.is_empty()),
-            ("for", self.for_s.is_some()),
+            ("for", self.length.is_some()),
             ("members", self.members.is_some()),
             ("seed", self.seed.is_some()),
         ];
@@ -190,13 +216,14 @@ impl Plan {
         // A parameter that the scene lacks would be refused.
         let takes = |setting: &&String| {
             let Some((scene, (name, value))) = scene.zip(setting.split_once('=')) else { return false };
-            scenes::by_id(scene).is_ok_and(|mut known| known.scene_mut().set(scene, name, value).is_ok())
+            scenes::by_id(scene)
+                .is_ok_and(|mut s| settings::apply(s.as_mut(), &[(name, value)]).is_ok_and(|taken| taken == [true]))
         };
         add("set", &self.set.iter().filter(takes).cloned().collect::<Vec<_>>());
         let steps: Vec<String> = self.steps.iter().map(u64::to_string).collect();
         add("steps", &if steps.is_empty() { Vec::new() } else { vec![steps.join(",")] });
-        if let Some(Seconds(s)) = self.for_s {
-            flags += &format!(" --for {s}");
+        if let Some(length) = self.length {
+            flags += &format!(" --for {length}");
         }
         if let Some(members) = self.members {
             flags += &format!(" --members {members}");
@@ -230,7 +257,7 @@ impl Plan {
         };
         self.apply_settings(&mut chosen)?;
         let (methods, schemes) = self.rules()?;
-        let end_s = self.end_s(&chosen)?;
+        let length = self.checked_length(&chosen)?;
         Ok(Selection {
             scenes: chosen,
             methods,
@@ -241,7 +268,7 @@ impl Plan {
                 steps.sort_unstable();
                 steps
             },
-            end_s,
+            length,
             quick: self.quick,
             draws: Draws {
                 members: self.members.unwrap_or(Draws::default().members),
@@ -271,39 +298,39 @@ impl Plan {
         Ok((methods, schemes))
     }
 
-    /// The length of the runs, where it is given.
-    fn end_s(&self, chosen: &[Box<dyn AnyScene>]) -> Result<Option<f64>, Error> {
-        let Some(Seconds(end_s)) = self.for_s else { return Ok(None) };
-        match chosen.iter().find(|scene| scene.scene().ends_s() <= end_s) {
-            Some(scene) => {
-                let message =
-                    format!("the motion of {} is over at {:.4} s; give less", scene.id(), scene.scene().ends_s());
-                Err(Error::plan("for".to_owned(), message))
+    /// The length of the runs, where it is given: one that every scene has.
+    fn checked_length(&self, chosen: &[Box<dyn AnyScene>]) -> Result<Option<Length>, Error> {
+        let Some(RunLength(length)) = self.length else { return Ok(None) };
+        for scene in chosen {
+            let ends_s = scene.scene().ends_s();
+            if ends_s <= length.end_s(scene.as_ref())? {
+                let message = format!("the motion of {} is over at {ends_s:.4} s; give less", scene.id());
+                return Err(Error::plan("for".to_owned(), message));
             }
-            None => Ok(Some(end_s)),
         }
+        Ok(Some(length))
     }
 
     fn apply_settings(&self, chosen: &mut [Box<dyn AnyScene>]) -> Result<(), Error> {
-        for setting in &self.set {
-            let (name, value) = setting.split_once('=').ok_or_else(|| {
-                let message = format!("'{setting}' is not of the form NAME=VALUE; `list SCENE` shows the names");
-                Error::plan("set".to_owned(), message)
-            })?;
-            let mut refusal = None;
-            let mut taken = false;
-            for scene in chosen.iter_mut() {
-                let id = scene.id();
-                match scene.scene_mut().set(id, name, value) {
-                    Ok(()) => taken = true,
-                    // Another scene may have the parameter; a wrong value is wrong at once.
-                    Err(error @ scenes::error::Error::UnknownName { .. }) => refusal = Some(error),
-                    Err(error) => return Err(error.into()),
-                }
-            }
-            if let (false, Some(error)) = (taken, refusal) {
-                return Err(error.into());
-            }
+        let pairs: Vec<(&str, &str)> = self
+            .set
+            .iter()
+            .map(|setting| {
+                setting.split_once('=').ok_or_else(|| {
+                    let message = format!("'{setting}' is not of the form NAME=VALUE; `list SCENE` shows the names");
+                    Error::plan("set".to_owned(), message)
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        let mut taken = vec![false; pairs.len()];
+        for scene in chosen.iter_mut() {
+            let by_scene = settings::apply(scene.as_mut(), &pairs)?;
+            taken.iter_mut().zip(by_scene).for_each(|(all, one)| *all |= one);
+        }
+        // Another scene may have the parameter.
+        if let Some(i) = taken.iter().position(|taken| !taken) {
+            let known: BTreeSet<String> = chosen.iter().flat_map(|scene| settings::names(scene.as_ref())).collect();
+            return Err(scenes::error::Error::unknown("parameter", pairs[i].0, known).into());
         }
         Ok(chosen.iter().try_for_each(|scene| scene.scene().check())?)
     }

@@ -118,7 +118,7 @@ fn scene_group(any: &dyn AnyScene, studies: &[Section]) -> Block {
     if !files.is_empty() {
         blocks.push(Block::Links { caption: "In the studies".to_owned(), files });
     }
-    Block::Group { id: anchor("scene", id), title: scene_title(id), note: info.about.to_owned(), blocks }
+    Block::Group { id: anchor("scene", id), title: scene_title(id), note: scenes::about(any).to_owned(), blocks }
 }
 
 fn theory(any: &dyn AnyScene) -> Table {

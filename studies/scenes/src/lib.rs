@@ -21,6 +21,7 @@ pub mod parameters;
 pub mod residual;
 pub mod scene;
 pub mod scheme;
+pub mod settings;
 pub mod special;
 pub mod stepping;
 pub mod theory;

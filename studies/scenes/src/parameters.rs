@@ -114,6 +114,21 @@ pub trait Parameters {
     fn set(&mut self, scene: &str, name: &str, text: &str) -> Result<(), Error>;
 }
 
+/// A parameter that stands for one of the scene's own: `of` = `factor` times what is given, with the scene's other parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Substitute {
+    /// The name after `--set`.
+    pub name: &'static str,
+    /// The parameter that it sets.
+    pub of: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// What one of it makes of the parameter.
+    pub factor: f64,
+}
+
 /// Reads a value and checks its range.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use integrator::methods::MethodId;
 use crate::error::Error;
 use crate::invariants::{Entry, Invariant};
 use crate::observation::{Observation, Quantity};
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Substitute};
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
 /// What a reader should know of a scene before looking at its numbers.
@@ -53,6 +53,17 @@ pub trait Scene: Parameters + Any + Send + Sync {
     /// Up to when the exact motion is known, s.
     fn ends_s(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// The time after which the motion, or the state of what turns, is the same again, s: an oscillation, an orbit, a bounce, the
+    /// force's period; of a free body one revolution at the rate of the start.
+    fn period_s(&self) -> Option<f64> {
+        None
+    }
+
+    /// Parameters that may be given in the place of one of its own.
+    fn substitutes(&self) -> Vec<Substitute> {
+        Vec::new()
     }
 
     /// Whether the motion goes round or to and fro, with 2 pi times the time scale as its period.
@@ -148,6 +159,11 @@ impl Pace {
             coarsest_steps: self.coarsest_steps << (left / COARSEST).log2().ceil().max(0.0) as u32,
         }
     }
+}
+
+/// The period of a motion with this rate, s; none of one that does nothing.
+pub(crate) fn period(rate: f64) -> Option<f64> {
+    Some(std::f64::consts::TAU / rate).filter(|s| *s > 0.0 && s.is_finite())
 }
 
 /// The time scale of a motion with this rate, s; 1 s for one that does nothing.

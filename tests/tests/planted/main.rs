@@ -140,7 +140,7 @@ impl Baseline {
             schemes: Vec::new(),
             precisions: Precision::ALL.to_vec(),
             steps: (0..8).map(|k| by_id().scene().info().coarsest_steps << k).collect(),
-            end_s: None,
+            length: None,
             quick: true,
             draws: Default::default(),
             progress: Progress::silent(),

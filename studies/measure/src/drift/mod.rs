@@ -151,7 +151,7 @@ impl Study for DriftStudy {
             &scenes,
             |_| 1,
             &Progress::silent(),
-            |&scene| Track::of(scene, selection.end_s, scales, observations),
+            |&scene| Track::of(scene, selection.given_end_s(scene), scales, observations),
         );
         let mut jobs = Vec::new();
         for track in &tracks {

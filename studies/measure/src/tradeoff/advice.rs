@@ -12,6 +12,9 @@ use super::search::{Need, Search, Tried, attempt, finer, most_steps, search};
 use crate::error::Error;
 use crate::study::Selection;
 use crate::sweep::in_parallel;
+use faer::fx128;
+use scenes::any::AnyScene;
+use scenes::observation::Value;
 use scenes::run::Precision;
 
 /// What is answered.
@@ -42,10 +45,12 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
     let mut advice = Advice { text: String::new(), possible: true, picks: Vec::new() };
     for scene in &selection.scenes {
         let (end_s, frames) = question.span(scene.as_ref())?;
-        let error = question.error.unwrap_or(f64::INFINITY);
         let truth = ExactSamples::new(scene.as_ref(), end_s, frames.map_or(SAMPLES, samples_at_frames));
+        let truth = truth.of(question.of);
+        check_truth(&truth, scene.as_ref(), question.of)?;
+        let question = absolute(question, &truth, scene.as_ref())?;
+        let error = question.error.unwrap_or(f64::INFINITY);
         let truth = truth.at_every_step(question.of, error);
-        check_truth(&truth, scene.id(), question.of)?;
         let need = Need { scene: scene.as_ref(), truth: &truth, error, end_s, unit: frames.unwrap_or(2) };
         let asked = Asked { need, frames, question, is_short: !is_chosen };
         let ways = ways(&asked, selection)?;
@@ -61,18 +66,37 @@ pub fn advise_in(selection: &Selection, question: Question, is_chosen: bool) -> 
 }
 
 /// Refuses a quantity that the scene does not have, and an exact motion that is not finite.
-fn check_truth(truth: &ExactSamples<'_>, scene: &str, of: Of) -> Result<(), Error> {
+fn check_truth(truth: &ExactSamples<'_>, scene: &dyn AnyScene, of: Of) -> Result<(), Error> {
     let [has, is_finite] = truth.is_known();
     if !has {
-        let message = format!("{scene} has no {}; choose another quantity", of.id());
+        let start = scene.exact(fx128::ZERO);
+        let has = |of: &Of| !of.values(scene, fx128::ZERO, &start).is_empty();
+        let known: Vec<&str> = Of::NAMED.into_iter().filter(has).map(Of::id).collect();
+        let message = format!("{} has no {}; give --of {}", scene.id(), of.id(), known.join(", or "));
         return Err(Error::plan("--of", message));
     }
     if !is_finite {
         let message =
             "the exact motion leaves the range of the numbers; shorten --for or set other parameters with --set";
-        return Err(Error::plan(format!("--scene {scene}"), message));
+        return Err(Error::plan(format!("--scene {}", scene.id()), message));
     }
     Ok(())
+}
+
+/// The question with the error in its unit, where a part was given.
+fn absolute(question: Question, truth: &ExactSamples<'_>, scene: &dyn AnyScene) -> Result<Question, Error> {
+    let Some(part) = question.error.filter(|_| question.is_relative) else { return Ok(question) };
+    let refuse = |message: String| Err(Error::plan("--error", message));
+    let start = scene.exact(fx128::ZERO);
+    let values = question.of.values(scene, fx128::ZERO, &start);
+    if values.iter().any(|value| matches!(**value, Value::Rotation(_))) {
+        return refuse("an attitude has no size of which it could be a part; give an angle, such as 1deg".to_owned());
+    }
+    let size = truth.scale();
+    if !(size > 0.0) {
+        return refuse(format!("the {} of {} is zero all the time; give a number", question.of.id(), scene.id()));
+    }
+    Ok(Question { error: Some(part * size), ..question })
 }
 
 /// Looks that fall on frames: a divisor of their number.

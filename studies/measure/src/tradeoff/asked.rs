@@ -6,20 +6,23 @@ use super::limit::Limit;
 use super::quantity::Of;
 use super::search::{Need, Search, Tried, watched};
 use crate::error::Error;
+use crate::study::Length;
 use scenes::any::AnyScene;
 use scenes::run::Precision;
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Question {
-    /// Largest acceptable error, in the unit of `of`.
+    /// Largest acceptable error, in the unit of `of`, or a part of its size.
     pub error: Option<f64>,
+    /// Whether the error is a part of the largest size of `of` along the exact motion.
+    pub is_relative: bool,
     /// What the error is the error of.
     pub of: Of,
     /// Microseconds of computing, on one core, for each simulated second.
     pub budget_us: Option<f64>,
-    /// Length of the run, s; the scene's horizon if it is `None`.
-    pub duration_s: Option<f64>,
+    /// Length of the run; the scene's horizon if it is `None`.
+    pub length: Option<Length>,
     /// Frames per second: steps are whole parts of a frame.
     pub rate_hz: Option<f64>,
 }
@@ -57,7 +60,7 @@ impl Question {
         let numbers = [
             ("--error", self.error, "an error in m or rad, such as 1e-3"),
             ("--budget-us", self.budget_us, "microseconds per simulated second, such as 5"),
-            ("--for", self.duration_s, "seconds, such as 60"),
+            ("--for", self.length.map(Length::number), "seconds, such as 60"),
             ("--rate", self.rate_hz, "frames per second, such as 60"),
         ];
         for (flag, value, example) in numbers {
@@ -70,7 +73,7 @@ impl Question {
         }
         if self.error.is_none() && self.budget_us.is_none() {
             let message = "needs an error or a budget; give --error 1e-3 or --budget-us 5".to_owned();
-            let flags = [(self.rate_hz.is_some(), "--rate"), (self.duration_s.is_some(), "--for"), (true, "--of")];
+            let flags = [(self.rate_hz.is_some(), "--rate"), (self.length.is_some(), "--for"), (true, "--of")];
             return Err(Error::plan(
                 flags.iter().find(|(is_given, _)| *is_given).map_or("--error", |(_, flag)| flag),
                 message,
@@ -84,7 +87,7 @@ impl Question {
     /// # Errors
     /// More frames than a search makes steps.
     pub(super) fn span(&self, scene: &dyn AnyScene) -> Result<(f64, Option<u64>), Error> {
-        let end_s = self.duration_s.unwrap_or(scene.scene().info().horizon_s);
+        let end_s = self.length.unwrap_or(Length::Seconds(scene.scene().info().horizon_s)).end_s(scene)?;
         let Some(rate) = self.rate_hz else { return Ok((end_s, None)) };
         // A product of 3600.0000000000005 is 3600 frames.
         let frames = (end_s * rate * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);

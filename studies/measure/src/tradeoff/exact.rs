@@ -47,6 +47,12 @@ impl<'a> ExactSamples<'a> {
         ExactSamples { scene, exact, of: Of::Configuration, end_s, level: f64::INFINITY, path: None }
     }
 
+    /// The same for the errors of a quantity.
+    #[must_use]
+    pub fn of(self, of: Of) -> Self {
+        ExactSamples { of, ..self }
+    }
+
     /// The same for the errors of a quantity, prepared to be compared with errors near `level` at every step of a run.
     #[must_use]
     pub fn at_every_step(self, of: Of, level: f64) -> Self {

@@ -56,6 +56,15 @@ impl Of {
         }
     }
 
+    /// The unit of the error, where it is the same on every scene.
+    pub fn named_unit(self) -> Option<&'static str> {
+        match self {
+            Of::Configuration => None,
+            Of::Quantity(quantity) => Some(quantity.unit()),
+            Of::Invariant(invariant) => Some(invariant.unit()),
+        }
+    }
+
     /// The unit of the error on a scene that looks like this at its start.
     pub fn unit(self, start: &Observation) -> &'static str {
         match self {

@@ -7,7 +7,9 @@ use clap::Args;
 use super::{Ending, ProgramInfo};
 use crate::exact;
 use crate::options::{threads, use_threads};
+use crate::units;
 use measure::error::Error;
+use measure::study::Length;
 
 /// What the binary says of itself.
 pub const WORDS: ProgramInfo = ProgramInfo {
@@ -35,20 +37,20 @@ pub struct Flags {
     #[arg(long, value_name = "HZ", value_parser = positive, help_heading = "When")]
     rate: Option<f64>,
 
-    /// Last time, s [default: the horizon of the scene]
-    #[arg(long = "for", value_name = "SECONDS", value_parser = positive, help_heading = "When")]
-    for_s: Option<f64>,
+    /// Last time: seconds, 2min, or 10rev of the scene's own period [default: the horizon of the scene]
+    #[arg(long = "for", value_name = "TIME", value_parser = length, help_heading = "When")]
+    length: Option<Length>,
 
     /// These times, s
-    #[arg(long, value_name = "T1,T2,...", help_heading = "When", conflicts_with_all = ["rate", "for_s", "times"])]
+    #[arg(long, value_name = "T1,T2,...", help_heading = "When", conflicts_with_all = ["rate", "length", "times"])]
     at: Option<String>,
 
     /// The times in the first column of FILE
-    #[arg(long, value_name = "FILE", help_heading = "When", conflicts_with_all = ["rate", "for_s"])]
+    #[arg(long, value_name = "FILE", help_heading = "When", conflicts_with_all = ["rate", "length"])]
     times: Option<PathBuf>,
 
     /// Print the case instead: parameters, start, units, frames, columns
-    #[arg(long, conflicts_with_all = ["rate", "for_s", "at", "times"])]
+    #[arg(long, conflicts_with_all = ["rate", "length", "at", "times"])]
     case: bool,
 
     /// Write to FILE instead of the terminal
@@ -63,6 +65,10 @@ pub struct Flags {
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
     number.ok_or_else(|| "not a finite number above zero".to_owned())
+}
+
+fn length(text: &str) -> Result<Length, String> {
+    units::length(text, "seconds, such as 2.5, or 2min, or 10rev")
 }
 
 /// More records than a reader of CSV takes.
@@ -85,7 +91,10 @@ pub fn run(flags: &Flags) -> Result<Ending, Error> {
         let times = match (&flags.at, &flags.times) {
             (Some(list), _) => at(list)?,
             (None, Some(path)) => in_file(path)?,
-            (None, None) => evenly(flags.rate.unwrap_or(60.0), flags.for_s.unwrap_or(scene.scene().info().horizon_s))?,
+            (None, None) => {
+                let length = flags.length.unwrap_or(Length::Seconds(scene.scene().info().horizon_s));
+                evenly(flags.rate.unwrap_or(60.0), length.end_s(scene.as_ref())?)?
+            }
         };
         exact::csv(scene.as_ref(), &times)?
     };

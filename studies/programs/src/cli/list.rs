@@ -22,7 +22,7 @@ pub(super) fn of(names: &[String]) -> Result<String, Error> {
 fn scenes() -> String {
     let mut table = Table::new(&["scene (--scene)", "what moves; its parameters (--set): list SCENE"], &[]);
     for scene in scenes::all() {
-        table.push([scene.id(), scene.scene().info().about]);
+        table.push([scene.id(), scenes::about(scene.as_ref())]);
     }
     table.to_text()
 }
@@ -33,8 +33,15 @@ fn one(scene: &dyn AnyScene) -> String {
     for p in scene.scene().parameters() {
         table.push([p.name, &p.value, p.unit, &p.range.to_string(), p.about]);
     }
-    let times = format!("runs to {} s; natural time scale {:.4} s", info.horizon_s, info.time_scale_s);
-    format!("{id}: {}\n  exact motion: {}\n  {times}\n\n{}", info.about, info.source, table.to_text())
+    for s in scene.scene().substitutes() {
+        let about = format!("in the place of {}: {}", s.of, s.about);
+        table.push([s.name, "", s.unit, "", &about]);
+    }
+    let period = scene.scene().period_s();
+    let period = period.map_or("no period".to_owned(), |s| format!("period (--for 10rev) {s:.4} s"));
+    let times = format!("runs to {} s; natural time scale {:.4} s; {period}", info.horizon_s, info.time_scale_s);
+    let about = scenes::about(scene);
+    format!("{id}: {about}\n  exact motion: {}\n  {times}\n\n{}", info.source, table.to_text())
 }
 
 fn methods() -> String {

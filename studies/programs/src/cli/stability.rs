@@ -6,6 +6,7 @@ use measure::stability::answer::{Answer, Question, answer};
 use super::Ending;
 use crate::options::Common;
 use crate::produce::refuse_schemes;
+use crate::units;
 use measure::error::Error;
 use measure::stability::Stability;
 
@@ -13,7 +14,7 @@ use measure::stability::Stability;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "What to ask")]
 pub struct Flags {
-    /// A step to judge, s
+    /// A step to judge: seconds, 5ms or 1/60
     #[arg(long = "step", value_name = "S", value_parser = seconds_per_step, allow_hyphen_values = true)]
     pub step_s: Option<f64>,
     /// Frames per second: how many substeps does each need?
@@ -33,7 +34,7 @@ fn part(text: &str) -> Result<f64, String> {
 }
 
 fn seconds_per_step(text: &str) -> Result<f64, String> {
-    positive(text, "seconds, such as 0.01")
+    units::seconds(text)
 }
 
 pub(super) fn frames_per_second(text: &str) -> Result<f64, String> {

@@ -338,6 +338,10 @@ impl Scene for BouncingBall {
         false
     }
 
+    fn period_s(&self) -> Option<f64> {
+        (self.restitution == 1.0).then(|| 2.0 * self.impact_speed().to_f64() / self.gravity)
+    }
+
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
         let (x, v) = (seen.vector(Quantity::Position)[0], seen.vector(Quantity::Velocity)[0]);
         let mass = fx128::lit(self.mass);

@@ -18,7 +18,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Pace, Scene, period, time_scale};
 use crate::special::free_top::FreeTop;
 use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::Theory;
@@ -94,6 +94,10 @@ impl Scene for BoxTumbling {
 
     fn amplification(&self, end_s: f64) -> f64 {
         rigid::free_amplification(self.inertia, self.omega, end_s)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(Vector3::from(self.omega).norm())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

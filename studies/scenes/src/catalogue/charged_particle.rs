@@ -20,7 +20,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Pace, Scene, period};
 use crate::special::elementary::{sinc, versine_over_square, x_minus_sin};
 use crate::special::scaled::{Scaled, exponent_of_largest, sum_of_vectors, times_two_to};
 use crate::theory::Law;
@@ -158,6 +158,10 @@ impl Scene for ChargedParticle {
             expected: "a charge and a magnetic field that are not zero; without them it is the scene constant-force"
                 .to_owned(),
         })
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(self.gyration())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -14,8 +14,8 @@ use crate::error::Error;
 use crate::invariants::{Entry, Invariant};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
-use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::parameters::{Substitute, scene_parameters};
+use crate::scene::{Info, Pace, Scene, period};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -111,6 +111,17 @@ impl Scene for DampedOscillator {
 
     fn rounding_accumulates(&self) -> bool {
         self.zeta == 0.0
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        (self.zeta < 1.0)
+            .then(|| period((self.stiffness / self.mass * (1.0 - self.zeta) * (1.0 + self.zeta)).sqrt()))?
+    }
+
+    fn substitutes(&self) -> Vec<Substitute> {
+        let factor = 0.5 / (self.stiffness.sqrt() * self.mass.sqrt());
+        let about = "Damping coefficient: zeta = c / (2 sqrt(k m)).";
+        ["c", "damping"].map(|name| Substitute { name, of: "zeta", unit: "kg/s", about, factor }).to_vec()
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

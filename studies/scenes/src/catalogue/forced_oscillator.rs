@@ -14,8 +14,8 @@ use crate::error::Error;
 use crate::invariants::{Entry, Invariant};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
-use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::parameters::{Substitute, scene_parameters};
+use crate::scene::{Info, Pace, Scene, period};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -106,6 +106,19 @@ impl Scene for ForcedOscillator {
         answerable::phase("forced-oscillator", ("stiffness", &self.stiffness), phase, end_s)?;
         let seen = Motion::<f64>::observe(self, &self.exact(end_s));
         answerable::range("forced-oscillator", self, &seen, end_s)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(self.drive)
+    }
+
+    fn substitutes(&self) -> Vec<Substitute> {
+        let factor = 2.0 * self.stiffness.sqrt() * self.mass.sqrt();
+        let ratio = "Damping ratio: c = 2 zeta sqrt(k m).";
+        vec![
+            Substitute { name: "zeta", of: "damping", unit: "1", about: ratio, factor },
+            Substitute { name: "c", of: "damping", unit: "kg/s", about: "Damping coefficient.", factor: 1.0 },
+        ]
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -15,7 +15,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Pace, Scene, period};
 use crate::special::elementary::nearest_turn;
 use crate::special::kepler::{eccentric_anomaly, slope};
 use crate::special::scaled::Scaled;
@@ -141,6 +141,10 @@ impl Scene for Kepler {
     /// A parameter that is rounded to f32 is wrong from the start, and no step makes that smaller.
     fn rounding_accumulates(&self) -> bool {
         [self.mu, self.semi_major, self.eccentricity, self.anomaly].iter().all(|&x| f64::from(x as f32) == x)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(self.mean_motion().value().to_f64())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -49,9 +49,12 @@ use std::any::Any;
 use crate::error::Error;
 
 macro_rules! list {
-    ($($id:literal => $kind:ident($scene:expr) $($taught:ident)?;)*) => {
+    ($($id:literal => $kind:ident($scene:expr) $($taught:ident)? $(, $about:literal)?;)*) => {
         /// The names of all scenes and presets, in the order in which they are shown.
         pub const IDS: &[&str] = &[$($id),*];
+
+        /// A line about each preset in the order of [`IDS`]; none where the scene's own line is about it.
+        const ABOUT: &[&[&str]] = &[$(&[$($about)?]),*];
 
         /// Every scene and preset with its default parameters.
         pub fn all() -> Vec<Box<dyn AnyScene>> {
@@ -79,38 +82,44 @@ macro_rules! if_taught {
 list! {
     "constant-force" => Particles(ConstantForce::default());
     "linear-drag" => Particles(LinearDrag::default());
-    "quadratic-drag/fall" => Particles(QuadraticDrag::default());
-    "quadratic-drag/rise" => Particles(QuadraticDrag::rise());
+    "quadratic-drag/fall" => Particles(QuadraticDrag::default()), "a fall from rest with quadratic drag, up to the terminal speed";
+    "quadratic-drag/rise" => Particles(QuadraticDrag::rise()), "a throw upwards with quadratic drag: the drag has a kink at the top";
     "oscillator" => Particles(Oscillator::default()) taught;
-    "oscillator/decimal" => Particles(Oscillator::decimal());
-    "damped-oscillator" => Particles(DampedOscillator::default()) taught;
-    "damped-oscillator/critical" => Particles(DampedOscillator::critical());
-    "damped-oscillator/over-damped" => Particles(DampedOscillator::over_damped());
-    "forced-oscillator" => Particles(ForcedOscillator::default());
-    "forced-oscillator/resonance" => Particles(ForcedOscillator::resonance());
-    "forced-oscillator/near-resonance" => Particles(ForcedOscillator::near_resonance());
-    "pendulum" => Particles(Pendulum::default()) taught;
-    "pendulum/rotation" => Particles(Pendulum::rotation());
-    "pendulum/near-separatrix" => Particles(Pendulum::near_separatrix());
-    "kepler" => Particles(Kepler::default()) taught;
-    "kepler/circular" => Particles(Kepler::circular());
-    "kepler/pericentre" => Particles(Kepler::pericentre());
-    "kepler/decimal" => Particles(Kepler::decimal());
-    "kepler/eccentric" => Particles(Kepler::eccentric()) taught;
-    "charged-particle" => Particles(ChargedParticle::default());
-    "charged-particle/magnetic" => Particles(ChargedParticle::magnetic()) taught;
+    "oscillator/decimal" => Particles(Oscillator::decimal()), "a mass on a spring whose numbers no binary arithmetic has: rounded parameters show";
+    "damped-oscillator" => Particles(DampedOscillator::default()) taught, "a damped mass on a spring, under-damped: zeta = 1/8";
+    "damped-oscillator/critical" => Particles(DampedOscillator::critical()), "a damped mass on a spring at zeta = 1: a double root, the quickest return without an overshoot";
+    "damped-oscillator/over-damped" => Particles(DampedOscillator::over_damped()), "a damped mass on a spring at zeta = 5/2: two rates, a factor 23 apart";
+    "forced-oscillator" => Particles(ForcedOscillator::default()), "a damped mass on a spring with a periodic force, away from resonance";
+    "forced-oscillator/resonance" => Particles(ForcedOscillator::resonance()), "an undamped mass on a spring, driven at its own frequency: the amplitude grows as t";
+    "forced-oscillator/near-resonance" => Particles(ForcedOscillator::near_resonance()), "an undamped mass on a spring, driven 2^-20 beside its own frequency: the textbook formula cancels";
+    "pendulum" => Particles(Pendulum::default()) taught, "a pendulum that swings widely, up to 110 degrees";
+    "pendulum/rotation" => Particles(Pendulum::rotation()), "a pendulum that goes over the top, round and round";
+    "pendulum/near-separatrix" => Particles(Pendulum::near_separatrix()), "a pendulum that nearly reaches the top: slow there, fast below";
+    "kepler" => Particles(Kepler::default()) taught, "a planet on an ellipse, e = 0.44, started away from an apsis";
+    "kepler/circular" => Particles(Kepler::circular()), "a planet on a circle";
+    "kepler/pericentre" => Particles(Kepler::pericentre()), "a planet on an ellipse, e = 0.44, started at the pericentre";
+    "kepler/decimal" => Particles(Kepler::decimal()), "a planet on an ellipse whose numbers no binary arithmetic has: rounded parameters show";
+    "kepler/eccentric" => Particles(Kepler::eccentric()) taught, "a comet, e = 0.91: its time scale at the pericentre is 1/35 of the mean one";
+    "charged-particle" => Particles(ChargedParticle::default()), "a charge in crossed fields: the force depends on the velocity, and both Eulers gain energy alike";
+    "charged-particle/magnetic" => Particles(ChargedParticle::magnetic()) taught, "a charge in a magnetic field alone, across it: a circle at constant speed";
     "spring-chain" => Particles(SpringChain::default());
-    "bouncing-ball" => Particles(BouncingBall::default()) taught;
-    "bouncing-ball/inelastic" => Particles(BouncingBall::inelastic());
+    "bouncing-ball" => Particles(BouncingBall::default()) taught, "an elastic ball whose bounces are seen at the end of a step: no method is better than first order";
+    "bouncing-ball/inelastic" => Particles(BouncingBall::inelastic()), "a ball that loses speed at each bounce and comes to rest after infinitely many";
     "principal-axis-torque" => Rigid(PrincipalAxisTorque::default());
     "sphere-torque" => Rigid(SphereTorque::default());
-    "symmetric-top/disc" => Rigid(SymmetricTop::disc());
-    "symmetric-top/rod" => Rigid(SymmetricTop::rod());
+    "symmetric-top/disc" => Rigid(SymmetricTop::disc()), "a free body as flat as a disc, I3 > I1: it precesses about the momentum at a constant rate";
+    "symmetric-top/rod" => Rigid(SymmetricTop::rod()), "a free body as long as a rod, I3 < I1: it precesses about the momentum at a constant rate";
     "torque-free-spin" => Rigid(TorqueFreeSpin::default()) taught;
     "tennis-racket" => Rigid(TorqueFreeSpin::tennis_racket()) taught;
     "heavy-top" => Rigid(HeavyTop::default());
     "manufactured" => Rigid(Manufactured::default());
     "box-tumbling" => Rigid(BoxTumbling::default());
+}
+
+/// One line about a scene or preset: what moves, and why it is looked at.
+pub fn about(scene: &dyn AnyScene) -> &'static str {
+    let own = IDS.iter().position(|id| *id == scene.id()).and_then(|i| ABOUT[i].first());
+    own.copied().unwrap_or(scene.scene().info().about)
 }
 
 /// The scene of that name, with its default parameters.

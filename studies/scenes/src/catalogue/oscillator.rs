@@ -17,7 +17,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Pace, Scene, period};
 use crate::special::elementary::sinc;
 use crate::special::scaled::Scaled;
 use crate::theory::Law;
@@ -131,6 +131,10 @@ impl Scene for Oscillator {
     /// A parameter that is rounded to f32 is wrong from the start, and no step makes that smaller.
     fn rounding_accumulates(&self) -> bool {
         [self.mass, self.stiffness, self.x0, self.v0].iter().all(|&x| f64::from(x as f32) == x)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(self.omega())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

@@ -18,7 +18,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Pace, Scene, period, time_scale};
 use crate::special::symmetric_top::SymmetricTop as Exact;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit};
@@ -98,6 +98,10 @@ impl Scene for SymmetricTop {
         let end_s = self.info().horizon_s;
         let phase = x.hypot(y).hypot(2.0 * z) * end_s;
         answerable::phase("symmetric-top", ("omega", &self.omega), phase, end_s)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(Vector3::from(self.omega).norm())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {

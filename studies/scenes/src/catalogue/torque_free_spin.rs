@@ -15,7 +15,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Pace, Scene, period, time_scale};
 use crate::special::free_top::FreeTop;
 
 scene_parameters! {
@@ -77,6 +77,10 @@ impl Scene for TorqueFreeSpin {
 
     fn amplification(&self, end_s: f64) -> f64 {
         rigid::free_amplification(self.inertia, self.omega, end_s)
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        period(Vector3::from(self.omega).norm())
     }
 
     fn invariants(&self, _t: fx128, seen: &Observation) -> Vec<Entry> {
