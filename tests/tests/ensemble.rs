@@ -13,7 +13,7 @@ use measure::ensemble::draw::{Members, draw, with_a_rule};
 use measure::ensemble::lanes::{Coordinates, Eight, WIDTH, run_pack, runs_in_lanes};
 use measure::ensemble::random::Generator;
 use measure::ensemble::{Row, measure};
-use measure::study::Selection;
+use measure::study::{Length, Selection};
 use measure::sweep::Progress;
 use nalgebra::{Matrix3, Vector1, Vector2, Vector3};
 use reports::write_csv;
@@ -190,7 +190,7 @@ fn first(rows: &[Row], method: MethodId, quantity: Quantity) -> &Row {
 // Fails if: a failed member scores as 0, or is left out of the count.
 #[test]
 fn failed_members_are_counted_and_never_scored() {
-    let mut plan = Selection { end_s: Some(2.25), ..selection("linear-drag", &IN_LANES, &[16]) };
+    let mut plan = Selection { length: Some(Length::Seconds(2.25)), ..selection("linear-drag", &IN_LANES, &[16]) };
     plan.scenes[0].scene_mut().set("linear-drag", "drag", "1e200").expect("a parameter");
     for row in measure(&plan, 20, 1) {
         assert_eq!((row.members, row.failed, row.worst_member), (20, 20, 0));
