@@ -6,6 +6,7 @@ mod difference;
 pub mod invariants;
 pub mod programs;
 pub mod reference;
+pub mod schema;
 pub mod table;
 
 pub use decimal::parse_fx128;

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use measure::stability::Stability;
 use measure::study::{Kind, Study};
 use measure::tradeoff::Tradeoff;
+use verification::programs::{files, run, text};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace").to_owned()
 }
 
 /// A file of a report, what one row of it is, and the type that is written.
-const FILES: [(&str, &str, &str, &str); 11] = [
+const FILES: [(&str, &str, &str, &str); 25] = [
     ("convergence.csv", "the errors of one quantity in one run", "studies/measure/src/convergence/mod.rs", "Row"),
     ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/order_row.rs", "OrderRow"),
     ("drift.csv", "one invariant over a stretch of a long run", "studies/measure/src/drift/mod.rs", "Row"),
@@ -26,14 +27,78 @@ const FILES: [(&str, &str, &str, &str); 11] = [
     ),
     ("tradeoff.*.csv", "one run with its error and its cost", "studies/measure/src/tradeoff/mod.rs", "Row"),
     ("ensemble.csv", "the errors of one quantity over all starts", "studies/measure/src/ensemble/mod.rs", "Row"),
+    ("ensemble-finest.csv", "the errors of the smallest step", "studies/measure/src/ensemble/show.rs", "Finest"),
+    ("ensemble-cost.csv", "one timed ensemble", "studies/measure/src/ensemble/cost.rs", "Case"),
+    (
+        "adequacy-recommendations.csv",
+        "the cheapest model for an error",
+        "studies/measure/src/adequacy/show.rs",
+        "Recommendation",
+    ),
+    ("adequacy-models.csv", "one model with one method", "studies/measure/src/adequacy/show.rs", "ModelError"),
+    ("rotation-schemes.csv", "one scheme for rigid bodies", "studies/measure/src/rotation/tables.rs", "SchemeLine"),
+    (
+        "rotation-orders.csv",
+        "the order of one scheme on one scene",
+        "studies/measure/src/rotation/tables.rs",
+        "OrderLine",
+    ),
+    (
+        "rotation-published.csv",
+        "one number printed elsewhere",
+        "studies/measure/src/rotation/tables.rs",
+        "PublishedLine",
+    ),
+    (
+        "tradeoff-cost-at-error.csv",
+        "the cheapest method for an error",
+        "studies/measure/src/tradeoff/tables.rs",
+        "IsoRow",
+    ),
+    ("tradeoff-fronts.csv", "one run of a Pareto front", "studies/measure/src/tradeoff/tables.rs", "FrontRow"),
+    (
+        "tradeoff-question.csv",
+        "the count over all scenes",
+        "studies/measure/src/tradeoff/comparison_tables.rs",
+        "QuestionRow",
+    ),
+    (
+        "tradeoff-semi-implicit-*.csv",
+        "semi-implicit Euler beside others on one scene",
+        "studies/measure/src/tradeoff/comparison_tables.rs",
+        "ComparisonRow",
+    ),
+    (
+        "tradeoff-rounding-optimum.csv",
+        "the step of least error of a sweep",
+        "studies/measure/src/tradeoff/rounding_optimum.rs",
+        "Minimum",
+    ),
+    ("tradeoff-peers.csv", "one setting of one system", "studies/measure/src/tradeoff/peers.rs", "Line"),
+    (
+        "tradeoff-formulation.csv",
+        "one method in both frames",
+        "studies/measure/src/tradeoff/cost_tables.rs",
+        "StorageRow",
+    ),
     ("*-claims.csv", "one claim with its verdict", "reports/src/claim.rs", "Claim"),
     ("bounds.csv", "one committed bound", "studies/gate/src/row.rs", "Row"),
 ];
 
+/// A file of a report whose records are those of another, with all of its columns, and which of them.
+const PARTS: [(&str, &str, &str); 5] = [
+    ("stability-limits.csv", "stability.*.csv", "largest stable steps"),
+    ("stability-other.csv", "stability.*.csv", "limits that no matrix tells"),
+    ("tradeoff-steps.csv", "tradeoff.*.csv", "the timed run of each sweep"),
+    ("tradeoff-lengths.csv", "tradeoff.*.csv", "timed runs of several lengths"),
+    ("tradeoff-stagnation.csv", "tradeoff.*.csv", "bodies that stand still"),
+];
+
 /// Name, type and documentation of the fields of a struct, as its source has them. A field that is not serialized is left out.
 fn fields(source: &str, name: &str) -> Vec<[String; 3]> {
-    let head = format!("pub struct {name} {{\n");
-    let body = source.split(&head).nth(1).unwrap_or_else(|| panic!("no struct {name}"));
+    let heads = [format!("struct {name} {{\n"), format!("struct {name}<'a> {{\n")];
+    let body = heads.iter().find_map(|head| source.split(head.as_str()).nth(1));
+    let body = body.unwrap_or_else(|| panic!("no struct {name}"));
     let body = body.split("\n}").next().unwrap_or_default();
     let (mut found, mut doc, mut skipped) = (Vec::new(), Vec::new(), false);
     for line in body.lines().map(str::trim) {
@@ -41,7 +106,10 @@ fn fields(source: &str, name: &str) -> Vec<[String; 3]> {
             doc.push(text.trim().to_owned());
         } else if line.starts_with("#[serde(skip") {
             skipped = true;
-        } else if let Some((name, kind)) = line.strip_prefix("pub ").and_then(|field| field.split_once(": ")) {
+        } else if let Some((name, kind)) =
+            line.trim_start_matches("pub ").split_once(": ").filter(|_| !line.starts_with('#'))
+        {
+            let name = name.trim_start_matches("pub(super) ");
             if !std::mem::take(&mut skipped) {
                 found.push([name.to_owned(), kind.trim_end_matches(',').to_owned(), doc.join(" ")]);
             }
@@ -59,9 +127,9 @@ fn cell(kind: &str) -> String {
     };
     let word = match inner {
         "f64" => "number",
-        "u64" | "usize" => "whole number",
+        "u64" | "u32" | "usize" => "whole number",
         "bool" => "true or false",
-        "String" => "text",
+        "String" | "&'a str" | "&'static str" => "text",
         _ => "name",
     };
     format!("{word}{may_be_empty}")
@@ -80,7 +148,7 @@ fn page() -> String {
     let mut page = String::from(
         "# Columns of the CSV files\n\n\
          Each file has one header line and one record per line. Numbers are written so that they read back exactly. An empty cell is a \
-         value that does not exist, for example the error of a run that diverged; it is never zero. The suffix of a name is its unit: \
+         value that does not exist, for example the error of a run that diverged; it is never zero. A file without records is empty. The suffix of a name is its unit: \
          `_s` seconds, `_m` metres. `schema` in `manifest.json` is raised when a column changes its name or meaning.\n",
     );
     for (file, what, source, name) in FILES {
@@ -100,6 +168,10 @@ fn page() -> String {
         for Kind { part, columns } in kinds(file) {
             page += &format!("| `{study}.{part}.csv` | {} |\n", columns.replace(',', ", "));
         }
+    }
+    page += "\n## Parts of other files\n\n| file | its records | columns of |\n|---|---|---|\n";
+    for (file, of, what) in PARTS {
+        page += &format!("| `{file}` | {what} | {of}, all of them |\n");
     }
     page
 }
@@ -151,4 +223,47 @@ fn every_column_is_documented_and_is_the_one_that_is_written() {
             "bounds.csv has a column '{column}' that no field explains"
         );
     }
+}
+
+/// Whether a name is of a pattern with at most one star.
+fn matches(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        Some((head, tail)) => name.len() >= head.len() + tail.len() && name.starts_with(head) && name.ends_with(tail),
+        None => pattern == name,
+    }
+}
+
+// Fails if: a report has a CSV, or a CSV a column, that the page does not explain.
+#[test]
+fn every_csv_of_a_report_is_explained() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let scenes = [
+        "--scene",
+        "oscillator",
+        "--scene",
+        "kepler",
+        "--scene",
+        "torque-free-spin",
+        "--scene",
+        "pendulum",
+        "--scene",
+        "symmetric-top/disc",
+    ];
+    let output = run("report", &[&["--quick"][..], &scenes].concat(), out.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let output = run("ensemble", &["--quick", "--scene", "kepler", "--members", "64"], out.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let mut seen = 0;
+    for (name, bytes) in files(out.path()).into_iter().filter(|(name, _)| name.ends_with(".csv")) {
+        let of = PARTS.iter().find(|(file, ..)| *file == name).map_or(name.as_str(), |(_, of, _)| of);
+        let known = FILES.iter().find(|(pattern, ..)| *pattern == of || matches(pattern, of));
+        let (_, _, source, row) = known.unwrap_or_else(|| panic!("{name} is not on the page of columns"));
+        let source = std::fs::read_to_string(root().join(source)).expect("a source file");
+        let fields = fields(&source, row);
+        for column in text(&bytes).lines().next().unwrap_or_default().split(',').filter(|c| !c.is_empty()) {
+            assert!(fields.iter().any(|[field, ..]| field == column), "{name}: column '{column}' is not on the page");
+        }
+        seen += 1;
+    }
+    assert!(seen >= 25, "{seen} files");
 }

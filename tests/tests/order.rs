@@ -214,7 +214,7 @@ fn the_exit_code_is_that_of_the_question() {
     assert_eq!(code(&["--expect", "5"]), Some(1));
     let json = order(table.as_bytes(), &["--json", "--expect", "4"]);
     let parsed: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
-    assert_eq!(parsed[0]["columns"][0]["verdict"], "as-expected");
+    assert_eq!(parsed["files"][0]["columns"][0]["verdict"], "as-expected");
     let said = text(&order(table.as_bytes(), &["--expect", "5"]).stdout);
     assert!(said.lines().next().is_some_and(|line| line.contains("order 4.000") && line.contains("below")), "{said}");
     assert!(said.lines().all(|line| line.chars().count() <= 200));

@@ -53,7 +53,7 @@ impl Report {
     /// For machines.
     pub fn json(&self) -> String {
         let files: Vec<serde_json::Value> = self.files.iter().map(json).collect();
-        serde_json::json!({ "files": files, "order": self.order }).to_string()
+        serde_json::json!({ "format": 1, "files": files, "order": self.order }).to_string()
     }
 
     /// For a comment on a pull request.

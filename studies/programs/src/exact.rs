@@ -167,6 +167,7 @@ pub fn case(scene: &dyn AnyScene) -> Json {
         "columns": columns,
         "horizon_s": info.horizon_s,
         "time_scale_s": info.time_scale_s,
+        "period_s": scene.scene().period_s(),
         "ends_s": ends_s.is_finite().then_some(ends_s),
         "conventions": {
             "units": "SI: m, kg, s, rad",

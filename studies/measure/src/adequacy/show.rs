@@ -14,29 +14,49 @@ const LEVELS: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6];
 /// The cheapest way to an error level on one scene.
 #[derive(Clone, Debug, Serialize)]
 struct Recommendation {
+    /// Scene or preset.
     scene: String,
+    /// Unit of the errors.
     unit: String,
+    /// The error asked for, in the unit.
     error_level: f64,
+    /// The cheapest model that reaches the error.
     model: String,
+    /// Method.
     method: String,
+    /// Its step, s; empty where no run reaches the error.
     h_s: Option<f64>,
+    /// Its error.
     error: Option<f64>,
+    /// Its operations.
     operations: Option<u64>,
+    /// Operations of the cheapest run of the full model that reaches it.
     operations_of_full_model: Option<u64>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct ModelError {
+    /// Scene or preset.
     scene: String,
+    /// Model.
     model: String,
+    /// Whether its error vanishes with the step.
     consistent: bool,
+    /// Method.
     method: String,
+    /// The order observed.
     order: Option<f64>,
+    /// Error with the smallest step.
     error_at_finest: Option<f64>,
+    /// Unit of the errors.
     unit: String,
+    /// Step below which the model's own error is the larger part, s.
     refining_is_wasted_below_h_s: Option<f64>,
+    /// Operations per step.
     operations_a_step: u64,
+    /// Evaluations of the force law per step.
     evaluations_a_step: f64,
+    /// Operations of the full model per step.
     operations_of_full_model_a_step: Option<u64>,
 }
 

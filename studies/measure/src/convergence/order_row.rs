@@ -57,7 +57,7 @@ pub struct OrderRow {
     pub runs: usize,
     /// Runs in the window.
     pub window_points: Option<usize>,
-    /// lim error / h^theory_order: see [`super::limit`].
+    /// lim error / h^theory_order, extrapolated to h = 0.
     pub constant: Option<f64>,
     /// A bound on what the extrapolation leaves.
     pub constant_change: Option<f64>,

@@ -22,13 +22,21 @@ const MOST_BODIES: usize = 64;
 
 #[derive(Clone, Debug, Serialize)]
 struct Case {
+    /// Scene or preset.
     scene: String,
+    /// Method.
     method: String,
+    /// Threads.
     threads: usize,
+    /// Bodies that are stepped together.
     bodies: usize,
+    /// Steps of each body.
     steps: u64,
+    /// Time, s.
     seconds: f64,
+    /// Time of one step of one body, ns.
     nanoseconds_a_body_step: f64,
+    /// The same over that of the first row.
     over_first: f64,
 }
 

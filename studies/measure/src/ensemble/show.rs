@@ -15,17 +15,29 @@ use crate::study::{Derived, color_of, distinct, short};
 /// The finest step of one sweep.
 #[derive(Clone, Debug, Serialize)]
 struct Finest {
+    /// Scene or preset.
     scene: String,
+    /// Method.
     method: String,
+    /// What was compared.
     quantity: String,
+    /// Step, s.
     h_s: f64,
+    /// Number of starts.
     members: usize,
+    /// Members that failed.
     failed: usize,
+    /// Median of the error at the end.
     median: Option<f64>,
+    /// Its 95th percentile; empty where that is a failed member.
     percentile_95: Option<f64>,
+    /// The largest.
     worst: Option<f64>,
+    /// The largest over the median.
     worst_over_median: Option<f64>,
+    /// Unit of the errors.
     unit: String,
+    /// The start of the worst, as --set takes it.
     worst_start: String,
 }
 

@@ -78,23 +78,41 @@ fn schemes(rows: &[Row], seen: &[ObservedOrder]) -> Result<Derived, Error> {
 /// One line of `rotation-schemes.csv`: one value a cell, empty where there is none.
 #[derive(Serialize)]
 struct SchemeLine {
+    /// Scheme.
     scheme: String,
+    /// Its name for a reader.
     label: String,
+    /// The order of the attitude on the free body.
     order: Option<f64>,
+    /// Evaluations of the torque per step.
     torque_evaluations_a_step: f64,
+    /// Largest error of the attitude with the step at_h_s, rad.
     attitude_error_rad: Option<f64>,
+    /// That step, s.
     at_h_s: Option<f64>,
+    /// Change of the kinetic energy T in a step, 2 dT / h^2, W/s.
     energy_change_w_per_s: Option<f64>,
+    /// Change of |L|^2 in a step over h^2, N^2 m^2.
     momentum_square_change_n2m2: Option<f64>,
+    /// The law by which the error of T grows.
     energy_drift_law: String,
+    /// Its largest size, a part of T at the start.
     energy_drift: Option<f64>,
+    /// The law by which the error of |L| grows.
     momentum_drift_law: String,
+    /// Its largest size, a part of |L| at the start.
     momentum_drift: Option<f64>,
+    /// The law by which the direction of L errs.
     momentum_direction_law: String,
+    /// Its largest size, rad.
     momentum_direction_rad: Option<f64>,
+    /// Factor of the nutation of a disc over the run.
     nutation_factor: Option<f64>,
+    /// What becomes of a disc at 60 rad/s with h = 1/60 s.
     disc_fate: String,
+    /// The axis at which the long run ends.
     long_run_end: String,
+    /// |L| at its end over that at the start.
     long_run_momentum_ratio: Option<f64>,
 }
 
@@ -166,14 +184,23 @@ fn destination(rows: &[Row], scheme: &str) -> (String, Option<f64>) {
 /// One line of `rotation-orders.csv`.
 #[derive(Serialize)]
 struct OrderLine<'a> {
+    /// Scene or preset.
     scene: &'a str,
+    /// Scheme.
     scheme: &'a str,
+    /// What was compared.
     quantity: &'a str,
+    /// Unit of the errors.
     unit: &'a str,
+    /// The order observed.
     order: Option<f64>,
+    /// Error with the smallest step.
     error_at_finest_step: Option<f64>,
+    /// Error with the step reference_h_s.
     error_at_reference_step: Option<f64>,
+    /// That step, s.
     reference_h_s: Option<f64>,
+    /// What the scheme conserves without a torque, by theory.
     conserved_without_torque: String,
 }
 
@@ -229,12 +256,19 @@ fn by_scene(seen: &[ObservedOrder]) -> Result<Derived, Error> {
 /// One line of `rotation-published.csv`.
 #[derive(Serialize)]
 struct PublishedLine<'a> {
+    /// Where the number was printed.
     source: &'a str,
+    /// Scheme.
     scheme: &'a str,
+    /// Step, s.
     h_s: f64,
+    /// What was compared.
     quantity: &'a str,
+    /// The number printed.
     published: Option<f64>,
+    /// The number measured.
     ours: Option<f64>,
+    /// Whether the two agree to the digits printed.
     agrees_to_the_printed_digits: bool,
 }
 

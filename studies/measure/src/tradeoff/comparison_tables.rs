@@ -16,16 +16,27 @@ use scenes::run::Precision;
 
 #[derive(Serialize)]
 pub(super) struct QuestionRow {
+    /// The error asked for, m or rad.
     pub(super) error_level: f64,
+    /// What is counted: evaluations up to the horizon, or time.
     pub(super) charge: CostMeasure,
+    /// Scenes that were compared.
     pub(super) scenes: usize,
+    /// On how many semi-implicit Euler is the cheapest, or level with it.
     pub(super) semi_implicit_is_best_or_level: usize,
+    /// On how many its cost beside RK4 is known.
     pub(super) rk4_known: usize,
+    /// On how many of these it is cheaper than RK4.
     pub(super) semi_implicit_beats_rk4: usize,
+    /// On how many RK4 is cheaper.
     pub(super) rk4_beats_semi_implicit: usize,
+    /// Median of the cost of RK4 over its own.
     pub(super) median_rk4_over_semi_implicit: Option<f64>,
+    /// On how many its cost beside implicit Euler is known.
     pub(super) implicit_euler_known: usize,
+    /// On how many of these it is cheaper.
     pub(super) semi_implicit_beats_implicit_euler: usize,
+    /// Median of the cost of implicit Euler over its own.
     pub(super) median_implicit_euler_over_semi_implicit: Option<f64>,
 }
 
@@ -100,16 +111,27 @@ fn median(factors: &[Between]) -> Option<f64> {
 
 #[derive(Serialize)]
 struct ComparisonRow {
+    /// Scene or preset.
     scene: String,
+    /// The error asked for, m or rad.
     error_level: f64,
+    /// What is counted: evaluations up to the horizon, or time.
     charge: CostMeasure,
+    /// Cost of semi-implicit Euler.
     semi_implicit: Option<f64>,
+    /// Whether that is known, or a bound.
     semi_implicit_is: &'static str,
+    /// Cost of the cheapest method.
     best: Option<f64>,
+    /// The cheapest method.
     best_method: String,
+    /// Its arithmetic.
     best_precision: Option<Precision>,
+    /// Cost of RK4.
     rk4: Option<f64>,
+    /// Cost of implicit Euler.
     implicit_euler: Option<f64>,
+    /// Cost of semi-implicit Euler over the cheapest, in words where it is a bound.
     semi_implicit_over_best: String,
 }
 

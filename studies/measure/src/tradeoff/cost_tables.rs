@@ -44,13 +44,21 @@ fn steps(rows: &[Row]) -> Result<Option<Derived>, Error> {
 
 #[derive(Serialize)]
 struct StorageRow {
+    /// Scene or preset.
     scene: String,
+    /// Method.
     method: String,
+    /// Number of steps.
     steps: u64,
+    /// Error with the angular velocity of the world frame, rad.
     world_error: f64,
+    /// The same in the body frame, rad.
     body_error: f64,
+    /// Cycles per step in the world frame.
     world_cycles_per_step: f64,
+    /// The same in the body frame.
     body_cycles_per_step: f64,
+    /// Their ratio.
     world_over_body: f64,
 }
 

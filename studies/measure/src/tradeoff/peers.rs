@@ -16,20 +16,35 @@ const OURS: &str = "integrator";
 /// One line of `tradeoff-peers.csv`: the fastest setting of one system that keeps the error asked for.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Line {
+    /// Day of the measurement.
     date: String,
+    /// Processor.
     processor: String,
+    /// What was compared.
     comparison: String,
+    /// Scene or preset.
     scene: String,
+    /// The system.
     system: String,
+    /// Its method.
     method: String,
+    /// Its setting.
     setting: String,
+    /// End of the run, s.
     horizon_s: f64,
+    /// Error asked for, m or rad.
     asked_error: Option<f64>,
+    /// Error reached.
     error: Option<f64>,
+    /// Evaluations of the force law.
     evaluations: Option<u64>,
+    /// Least time for a simulated second, ns.
     ns_per_simulated_second: f64,
+    /// The same, median.
     median_ns_per_simulated_second: f64,
+    /// The same over that of this workspace.
     ratio_to_ours: Option<f64>,
+    /// What to know of it.
     note: String,
 }
 

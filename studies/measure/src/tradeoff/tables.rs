@@ -29,18 +29,31 @@ pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
 
 #[derive(Serialize)]
 struct IsoRow {
+    /// Scene or preset.
     scene: String,
+    /// The error asked for, m or rad.
     error_level: f64,
+    /// What is counted: evaluations up to the horizon, or time.
     charge: CostMeasure,
+    /// The cheapest method.
     method: String,
+    /// Its arithmetic.
     precision: Precision,
+    /// Its step, s.
     h_s: f64,
+    /// Its cost.
     cost: f64,
+    /// Unit of the costs.
     cost_unit: &'static str,
+    /// Whether the cost is only an upper bound, because no coarser run was made.
     is_at_most: bool,
+    /// The next method.
     runner_up: Option<String>,
+    /// Its arithmetic.
     runner_up_precision: Option<Precision>,
+    /// Its cost.
     runner_up_cost: Option<f64>,
+    /// Its cost over the best.
     runner_up_over_best: Option<f64>,
 }
 
@@ -114,13 +127,21 @@ fn iso_row(scene: &str, error_level: f64, charge: CostMeasure, prices: &[CostAtE
 
 #[derive(Serialize)]
 struct FrontRow {
+    /// Scene or preset.
     scene: String,
+    /// What is counted: evaluations up to the horizon, or time.
     charge: CostMeasure,
+    /// Cost: evaluations, or ns per simulated second.
     cost: f64,
+    /// Error, m or rad: no cheaper run has a smaller one.
     error: f64,
+    /// Method.
     method: String,
+    /// Arithmetic.
     precision: Precision,
+    /// Number of steps.
     steps: u64,
+    /// Step, s.
     h_s: f64,
 }
 

@@ -98,6 +98,13 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "not a finite number above zero".to_owned())
 }
 
+/// What a machine is told. Keys are added and never change their meaning under the same `format`.
+#[derive(Serialize)]
+struct ForMachines {
+    format: u32,
+    files: Vec<File>,
+}
+
 #[derive(Serialize)]
 struct File {
     path: String,
@@ -141,12 +148,12 @@ pub fn run(flags: &Flags) -> Result<Ending, Error> {
         }
         files.push(File { path: path.display().to_string(), columns });
     }
+    let mut columns = files.iter().flat_map(|file| &file.columns);
+    let fails = flags.expect.is_some() && columns.any(|column| column.verdict != Verdict::AsExpected);
     if flags.json {
         let refuse = |error: serde_json::Error| Error::plan("JSON", error.to_string());
-        text = serde_json::to_string_pretty(&files).map_err(refuse)? + "\n";
+        text = serde_json::to_string_pretty(&ForMachines { format: 1, files }).map_err(refuse)? + "\n";
     }
-    let columns = || files.iter().flat_map(|file| &file.columns);
-    let fails = flags.expect.is_some() && columns().any(|column| column.verdict != Verdict::AsExpected);
     Ok(Ending { text, note: None, code: u8::from(fails) })
 }
 
