@@ -20,6 +20,7 @@ fn rows() -> &'static [Row] {
             length: None,
             quick: false,
             draws: Default::default(),
+            looped: None,
             progress: Progress::silent(),
         })
     })

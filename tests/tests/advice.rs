@@ -22,6 +22,7 @@ fn selection(id: &str) -> Selection {
         length: None,
         quick: false,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

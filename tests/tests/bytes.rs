@@ -25,6 +25,7 @@ fn rows<S: Study>(scene: &str) -> String {
         length: None,
         draws: Default::default(),
         quick: true,
+        looped: None,
         progress: Progress::silent(),
     };
     reports::write_csv(&S::measure(&selection)).expect("rows have a form")

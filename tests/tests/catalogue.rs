@@ -20,6 +20,7 @@ fn everything(precisions: &[Precision]) -> Selection {
         length: None,
         quick: false,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

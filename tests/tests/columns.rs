@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 }
 
 /// A file of a report, what one row of it is, and the type that is written.
-const FILES: [(&str, &str, &str, &str); 25] = [
+const FILES: [(&str, &str, &str, &str); 29] = [
     ("convergence.csv", "the errors of one quantity in one run", "studies/measure/src/convergence/mod.rs", "Row"),
     ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/order_row.rs", "OrderRow"),
     ("drift.csv", "one invariant over a stretch of a long run", "studies/measure/src/drift/mod.rs", "Row"),
@@ -26,6 +26,10 @@ const FILES: [(&str, &str, &str, &str); 25] = [
         "Row",
     ),
     ("tradeoff.*.csv", "one run with its error and its cost", "studies/measure/src/tradeoff/mod.rs", "Row"),
+    ("loops.csv", "one measured number of a loop around a step", "studies/measure/src/loops/row.rs", "Row"),
+    ("loops-orders.csv", "the order of one quantity in one loop", "studies/measure/src/loops/show.rs", "OrderLine"),
+    ("loops-laws.csv", "one case of which theory knows the number", "studies/measure/src/loops/row.rs", "Row"),
+    ("loops-published.csv", "one number printed elsewhere", "studies/measure/src/loops/row.rs", "Row"),
     ("ensemble.csv", "the errors of one quantity over all starts", "studies/measure/src/ensemble/mod.rs", "Row"),
     ("ensemble-finest.csv", "the errors of the smallest step", "studies/measure/src/ensemble/show.rs", "Finest"),
     ("ensemble-cost.csv", "one timed ensemble", "studies/measure/src/ensemble/cost.rs", "Case"),

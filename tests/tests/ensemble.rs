@@ -179,6 +179,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
         length: None,
         quick: true,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

@@ -153,6 +153,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
         length: None,
         quick: false,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

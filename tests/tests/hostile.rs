@@ -7,6 +7,7 @@ use std::path::Path;
 use measure::adequacy::Adequacy;
 use measure::convergence::Convergence;
 use measure::drift::DriftStudy;
+use measure::loops::Loops;
 use measure::rotation::Rotation;
 use measure::stability::Stability;
 use measure::study::Study;
@@ -34,6 +35,9 @@ fn every_reader(bytes: &[u8]) {
     rows::<Rotation>(&text);
     rows::<Adequacy>(&text);
     rows::<Stability>(&text);
+    rows::<Loops>(&text);
+    let _ = measure::loops::published::rows(&text, "published-loops.csv");
+    let _ = measure::game_loop::Loop::read(&text.lines().take(4).collect::<Vec<_>>());
     rows::<Tradeoff>(&text);
     let _ = gate::Bounds::parse(bytes, "bounds.csv");
     let _ = reports::read_csv::<measure::rotation::published::Published>(&text, "published.csv");

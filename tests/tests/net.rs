@@ -144,6 +144,7 @@ fn selection(scene: Box<dyn AnyScene>, precision: Precision) -> Selection {
         length: None,
         quick: true,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

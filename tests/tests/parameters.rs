@@ -27,6 +27,7 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
         length: None,
         quick: false,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

@@ -207,6 +207,7 @@ fn every_claim_of_a_quick_study_holds() {
         length: None,
         quick: true,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     };
     let rows = Stability::measure(&selection);

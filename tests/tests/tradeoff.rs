@@ -31,6 +31,7 @@ fn selection(ids: &[&str]) -> Selection {
         length: None,
         quick: false,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

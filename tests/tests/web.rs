@@ -192,6 +192,7 @@ fn selection() -> Selection {
         length: None,
         quick: true,
         draws: Default::default(),
+        looped: None,
         progress: Progress::silent(),
     }
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
+use crate::game_loop::Loop;
 use crate::sweep::Progress;
 use integrator::methods::MethodId;
 use scenes::any::AnyScene;
@@ -29,6 +30,8 @@ pub struct Selection {
     pub draws: Draws,
     /// Fewer and shorter runs.
     pub quick: bool,
+    /// How the step is used, where it was said.
+    pub looped: Option<Loop>,
     /// The bar to be shown.
     pub progress: Progress,
 }

@@ -23,7 +23,7 @@ pub struct Common {
 
     /// Run nothing: draw, judge and write anew from the CSV rows in DIR, into DIR unless --out is given
     #[arg(long, value_name = "DIR", help_heading = "What to run",
-        conflicts_with_all = ["scene", "method", "precision", "set", "steps", "length", "quick", "plan_file"])]
+        conflicts_with_all = ["scene", "method", "precision", "set", "steps", "length", "looped", "quick", "plan_file"])]
     pub from: Option<PathBuf>,
 
     /// Directory for the results [default: target/report for the report, target/NAME for the study NAME]

@@ -8,6 +8,7 @@ use integrator::methods::{MethodId, RigidStep};
 use serde::{Deserialize, Serialize};
 
 use measure::error::Error;
+use measure::game_loop::Loop;
 use scenes::any::AnyScene;
 use scenes::run::{Precision, method_from_id};
 use scenes::scheme::Scheme;
@@ -57,6 +58,11 @@ pub struct Plan {
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+
+    /// How the step is used: frames, substeps, damping, clock and more; may be given again (`loops --help` lists the keys)
+    #[arg(long = "loop", value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    #[serde(rename = "loop", skip_serializing_if = "Vec::is_empty")]
+    pub looped: Vec<String>,
 
     /// One preset of each scene, fewer halvings and shorter runs
     #[arg(long)]
@@ -151,7 +157,7 @@ impl Plan {
     }
 
     fn keys() -> &'static str {
-        "scene, method, precision, set (lists of texts), steps (a list of numbers), for (seconds, or a text as \"100rev\"), members, seed (whole numbers) and quick (true or false)"
+        "scene, method, precision, set, loop (lists of texts), steps (a list of numbers), for (seconds, or a text as \"100rev\"), members, seed (whole numbers) and quick (true or false)"
     }
 
     /// The plan as TOML.
@@ -182,6 +188,7 @@ impl Plan {
             length: flags.length.or(self.length),
             members: flags.members.or(self.members),
             seed: flags.seed.or(self.seed),
+            looped: either(flags.looped, self.looped),
             quick: self.quick || flags.quick,
         }
     }
@@ -197,6 +204,7 @@ impl Plan {
             ("for", self.length.is_some()),
             ("members", self.members.is_some()),
             ("seed", self.seed.is_some()),
+            ("loop", !self.looped.is_empty()),
         ];
         let unheard = given.into_iter().find(|(key, is_given)| *is_given && !heeds.contains(key));
         unheard.map_or(Ok(()), |(key, _)| {
@@ -213,6 +221,7 @@ impl Plan {
         };
         add("method", &self.method);
         add("precision", &self.precision);
+        add("loop", &self.looped);
         // A parameter that the scene lacks would be refused.
         let takes = |setting: &&String| {
             let Some((scene, (name, value))) = scene.zip(setting.split_once('=')) else { return false };
@@ -274,6 +283,7 @@ impl Plan {
                 members: self.members.unwrap_or(Draws::default().members),
                 seed: self.seed.unwrap_or(Draws::default().seed),
             },
+            looped: (!self.looped.is_empty()).then(|| Loop::read(&self.looped)).transpose()?,
             progress: Progress::silent(),
         })
     }

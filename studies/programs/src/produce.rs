@@ -16,6 +16,7 @@ use measure::convergence::Convergence;
 use measure::drift::DriftStudy;
 use measure::error::Error;
 use measure::files;
+use measure::loops::Loops;
 use measure::rotation::Rotation;
 use measure::stability::Stability;
 use measure::study::{Derived, Selection, Study};
@@ -128,7 +129,7 @@ impl Source {
                 made.push(Box::new(move |plan| from_rows::<$study>(&rows, plan, format)));
             )*};
         }
-        measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Tradeoff);
+        measure!(Convergence, DriftStudy, Rotation, Adequacy, Stability, Loops, Tradeoff);
         made.into_par_iter().map(|make| make(&plan)).collect()
     }
 }

@@ -143,6 +143,7 @@ impl Baseline {
             length: None,
             quick: true,
             draws: Default::default(),
+            looped: None,
             progress: Progress::silent(),
         };
         let rows = Convergence::measure(&selection);

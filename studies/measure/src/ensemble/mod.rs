@@ -3,7 +3,7 @@
 pub mod cost;
 pub mod draw;
 pub mod lanes;
-pub mod random;
+pub use crate::random;
 mod show;
 
 use std::ops::Range;

@@ -9,8 +9,8 @@ use faer::fx128;
 use integrator::Single;
 
 use super::amplification::{Amplification, matrix};
-use crate::ensemble::random::Generator;
 use crate::fit::student_t_95;
+use crate::random::Generator;
 use scenes::stepping::Stepping;
 
 /// The growth of a pattern of steps that repeats.
@@ -66,6 +66,11 @@ const LENGTHS: u64 = 1024;
 
 /// The mean growth rate of steps h (1 + s u) with u uniform in [-1, 1], from a seed; `None` where a step is not a linear map.
 pub fn jitter(stepping: &Stepping<'_>, h_s: f64, part: f64, seed: u64) -> Option<Jitter> {
+    jitter_over(stepping, h_s, part, seed, BLOCKS)
+}
+
+/// The same over so many blocks of 65536 steps, at least 2.
+pub fn jitter_over(stepping: &Stepping<'_>, h_s: f64, part: f64, seed: u64, blocks: u64) -> Option<Jitter> {
     let length = |k: u64| h_s * (1.0 + part * ((2.0 * k as f64 + 1.0) / LENGTHS as f64 - 1.0));
     let plain = |m: Amplification| m.entries.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
     let matrices = (0..LENGTHS).map(|k| matrix(stepping, length(k)).map(plain)).collect::<Option<Vec<_>>>()?;
@@ -73,7 +78,7 @@ pub fn jitter(stepping: &Stepping<'_>, h_s: f64, part: f64, seed: u64) -> Option
     let mut random = Generator::new(seed);
     let mut vector: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
     let mut rates = Vec::new();
-    for block in 0..=BLOCKS {
+    for block in 0..=blocks {
         let mut grown = 0.0;
         for _ in 0..BLOCK {
             let m = &matrices[(random.bits() % LENGTHS) as usize];
@@ -94,5 +99,5 @@ pub fn jitter(stepping: &Stepping<'_>, h_s: f64, part: f64, seed: u64) -> Option
     let rate = rates.iter().sum::<f64>() / count;
     let variance = rates.iter().map(|x| (x - rate).powi(2)).sum::<f64>() / (count - 1.0);
     let half_width = student_t_95(rates.len() - 1) * (variance / count).sqrt();
-    Some(Jitter { rate, half_width, steps: BLOCK * BLOCKS })
+    Some(Jitter { rate, half_width, steps: BLOCK * blocks })
 }

@@ -9,12 +9,13 @@ use measure::convergence::Convergence;
 use measure::drift::DriftStudy;
 use measure::ensemble::Ensemble;
 use measure::error::Error;
+use measure::loops::Loops;
 use measure::rotation::Rotation;
 use measure::stability::Stability;
 use measure::tradeoff::Tradeoff;
 
 use super::messages::{complain, print};
-use super::{asking, bounds, exact, main, order, report, stability, start, tradeoff, with_tables};
+use super::{asking, bounds, exact, loops, main, order, report, stability, start, tradeoff, with_tables};
 
 /// A program: its name, what it does, and how it is run.
 struct Command {
@@ -71,6 +72,11 @@ const GROUPS: [(&str, &[Command]); 4] = [
                 name: "rotation",
                 about: "every step for rigid bodies in use, side by side",
                 run: main::<Rotation>,
+            },
+            Command {
+                name: "loops",
+                about: "what frames, substeps, damping and clocks do to a step",
+                run: || asking::<Loops, _>(loops::ask),
             },
             Command { name: "ensemble", about: "errors over many starts", run: with_tables::<Ensemble> },
         ],

@@ -5,6 +5,7 @@ mod color;
 pub mod exact;
 pub mod front;
 mod list;
+pub mod loops;
 mod messages;
 pub mod order;
 mod program;
