@@ -7,7 +7,8 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 /// Every binary of the workspace.
-pub const PROGRAMS: [&str; 7] = ["report", "convergence", "drift", "rotation", "adequacy", "stability", "tradeoff"];
+pub const PROGRAMS: [&str; 8] =
+    ["report", "convergence", "drift", "rotation", "adequacy", "stability", "loops", "tradeoff"];
 
 /// The binary of that name, of the same profile as this test. `cargo test` alone does not build the binaries of another
 /// package, so the first call does.

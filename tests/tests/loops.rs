@@ -168,7 +168,7 @@ fn everything() -> Selection {
         schemes: Vec::new(),
         precisions: scenes::run::Precision::ALL.to_vec(),
         steps: Vec::new(),
-        end_s: None,
+        length: None,
         draws: Default::default(),
         quick: false,
         looped: None,

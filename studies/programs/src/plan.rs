@@ -59,8 +59,8 @@ pub struct Plan {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
 
-    /// How the step is used: frames, substeps, damping, clock and more; may be given again (`loops --help` lists the keys)
-    #[arg(long = "loop", value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    /// How the step is used: frames, substeps, damping, clock and more; may be given again (--help lists the keys)
+    #[arg(long = "loop", long_help = measure::game_loop::settings::HELP, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     #[serde(rename = "loop", skip_serializing_if = "Vec::is_empty")]
     pub looped: Vec<String>,
 

@@ -49,7 +49,8 @@ pub struct Seal {
 pub const SCHEMA: u32 = 2;
 
 /// The files of rows, one a study.
-const STUDIES: [&str; 7] = ["convergence", "drift", "rotation", "adequacy", "stability", "tradeoff", "ensemble"];
+const STUDIES: [&str; 8] =
+    ["convergence", "drift", "rotation", "adequacy", "stability", "loops", "tradeoff", "ensemble"];
 
 const REMEDY: &str = "put the file back as a run wrote it, or run again";
 

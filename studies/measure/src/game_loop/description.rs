@@ -18,7 +18,7 @@ macro_rules! choices {
                 match self { $( $name::$value => $id, )* }
             }
 
-            pub(super) fn read(key: &str, text: &str) -> Result<Self, Error> {
+            pub(super) fn from_text(key: &str, text: &str) -> Result<Self, Error> {
                 match text {
                     $( $id => Ok($name::$value), )*
                     _ => Err(wrong(key, text, &[$( $id ),*].join(", "))),

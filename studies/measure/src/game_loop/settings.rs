@@ -12,6 +12,23 @@ pub const SETTINGS: &str = "frames=S,S,.. or FILE.csv, jitter=PART[:SEED], clamp
     read=stored|synchronised, clock=exact|sum-f64|sum-f32, position=f64|f32, velocity=f64|f32, \
     contact=end|before-kick|after-kick|no-move|impact, drawn=last|interpolated|extrapolated";
 
+/// The help of a flag that takes settings.
+pub const HELP: &str = "How the step is used; may be given again.\n\
+    frames=S,S,..        lengths of frames in turn; or FILE.csv, its first column\n\
+    jitter=PART[:SEED]   frames vary at random by this part, either way\n\
+    clamp=S              a longer frame is cut\n\
+    inner=S              an accumulator takes inner steps of this length\n\
+    substeps=N           steps in a frame, or in an inner step\n\
+    force=               fresh, or frozen over the frame\n\
+    damping=             linear:C, implicit:C, power:C, exponential:C (C in 1/s)\n\
+    damped=              after-move, or before-move\n\
+    start=               plain, or half-kick (half a kick back)\n\
+    read=                stored, or synchronised (half a kick on)\n\
+    clock=               exact, sum-f64, sum-f32\n\
+    position=, velocity= stored as f64 or f32\n\
+    contact=             end, before-kick, after-kick, no-move, impact\n\
+    drawn=               last, interpolated, extrapolated";
+
 const KEYS: [&str; 15] = [
     "frames", "jitter", "clamp", "inner", "substeps", "force", "damping", "damped", "start", "read", "clock",
     "position", "velocity", "contact", "drawn",
@@ -22,10 +39,14 @@ fn not_a(key: &str, value: &str, expected: &str) -> Error {
 }
 
 fn number(key: &str, text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f64, Error> {
-    text.trim().parse().ok().filter(|x: &f64| x.is_finite() && allowed(*x)).ok_or_else(|| not_a(key, text, expected))
+    let quotient = |text: &str| match text.split_once('/') {
+        Some((a, b)) => Some(a.trim().parse::<f64>().ok()? / b.trim().parse::<f64>().ok()?),
+        None => text.trim().parse().ok(),
+    };
+    quotient(text).filter(|x| x.is_finite() && allowed(*x)).ok_or_else(|| not_a(key, text, expected))
 }
 
-const SECONDS: &str = "a length of time; give seconds above 0, such as 0.016";
+const SECONDS: &str = "a length of time; give seconds above 0, such as 0.016 or 1/60";
 
 impl Loop {
     /// The loop of these settings, each `key=value`.
@@ -54,16 +75,16 @@ impl Loop {
                 let n = value.trim().parse().ok().filter(|n| (1..=4096).contains(n));
                 self.substeps = n.ok_or_else(|| not_a(key, value, "a number of substeps; give 1 to 4096"))?;
             }
-            "force" => self.force = Force::read(key, value)?,
+            "force" => self.force = Force::from_text(key, value)?,
             "damping" => self.damping = damping(value)?,
-            "damped" => self.damped = Damped::read(key, value)?,
-            "start" => self.start = Start::read(key, value)?,
-            "read" => self.read = Read::read(key, value)?,
-            "clock" => self.clock = Clock::read(key, value)?,
-            "position" => self.position = Stored::read(key, value)?,
-            "velocity" => self.velocity = Stored::read(key, value)?,
-            "contact" => self.contact = Contact::read(key, value)?,
-            "drawn" => self.drawn = Drawn::read(key, value)?,
+            "damped" => self.damped = Damped::from_text(key, value)?,
+            "start" => self.start = Start::from_text(key, value)?,
+            "read" => self.read = Read::from_text(key, value)?,
+            "clock" => self.clock = Clock::from_text(key, value)?,
+            "position" => self.position = Stored::from_text(key, value)?,
+            "velocity" => self.velocity = Stored::from_text(key, value)?,
+            "contact" => self.contact = Contact::from_text(key, value)?,
+            "drawn" => self.drawn = Drawn::from_text(key, value)?,
             _ => return Err(Error::unknown("setting of a loop", key, KEYS.map(str::to_owned))),
         }
         Ok(())

@@ -241,9 +241,9 @@ impl Asked<'_> {
         let moved = |j: usize, by: f64| -> Option<Vec<f64>> {
             let mut s = start;
             if j < n {
-                s.q[j] += by
+                s.q[j] += by;
             } else {
-                s.v[j - n] += by
+                s.v[j - n] += by;
             }
             let end = self.job(&motion, self.plan, s).run(Until::Frames(frames), |_| {}).ok()?.state;
             Some((0..n).map(|i| end.q[i]).chain((0..n).map(|i| end.v[i])).collect())

@@ -96,7 +96,10 @@ impl Study for Loops {
 const HALVINGS: u32 = 8;
 
 /// The loops that are swept.
-struct Sweeps(Vec<(String, Loop, Option<MethodId>, fn(f64) -> [f64; 2])>);
+struct Sweeps(Vec<Swept>);
+
+/// The name of a loop, its settings, the method if it is for one only, and the orders for a method of order p.
+type Swept = (String, Loop, Option<MethodId>, fn(f64) -> [f64; 2]);
 
 impl Sweeps {
     /// The plain loop, and the chosen one or every choice of this study.

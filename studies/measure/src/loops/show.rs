@@ -13,23 +13,23 @@ use scenes::run::method_from_id;
 
 /// One measured order.
 #[derive(Serialize)]
-pub struct OrderLine<'a> {
+struct OrderLine<'a> {
     /// The choice that the sweep was made for.
-    pub choice: &'a str,
+    choice: &'a str,
     /// The settings of the loop, as `--loop` takes them, for frames of 1 s.
-    pub settings: &'a str,
+    settings: &'a str,
     /// Scene.
-    pub scene: &'a str,
+    scene: &'a str,
     /// Method.
-    pub method: &'a str,
+    method: &'a str,
     /// Configuration or velocity.
-    pub quantity: &'a str,
+    quantity: &'a str,
     /// The slope of the error over the frame in the window that shows one.
-    pub order: Option<f64>,
+    order: Option<f64>,
     /// The order that theory predicts; empty where it predicts none.
-    pub theory: Option<f64>,
+    theory: Option<f64>,
     /// The error at the smallest frame, in the unit of the quantity; empty where the run failed.
-    pub error_at_finest: Option<f64>,
+    error_at_finest: Option<f64>,
 }
 
 fn order_lines(rows: &[Row]) -> Vec<OrderLine<'_>> {

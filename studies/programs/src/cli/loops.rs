@@ -5,30 +5,25 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use measure::claim::Evidence;
 use measure::error::Error;
-use measure::game_loop::settings::SETTINGS;
 use measure::loops::answer::{Answer, answer};
 use measure::loops::published;
 use reports::Table;
 
 use super::Ending;
-use super::stability::positive;
 use crate::options::Common;
+use crate::units;
 
 /// A step, for an answer beside the study.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "What to ask", after_long_help = SETTINGS)]
+#[command(next_help_heading = "What to ask")]
 pub struct Flags {
     /// The length of a frame, s: an answer about the loop, and no files. Without it the study sweeps the frame, and lengths of time
     /// in --loop are parts of a frame
-    #[arg(long = "step", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long = "step", value_name = "S", value_parser = units::seconds, allow_hyphen_values = true)]
     pub step_s: Option<f64>,
     /// Printed numbers in this CSV: does this project reproduce them? Columns as in studies/measure/data/published-loops.csv
     #[arg(long, value_name = "FILE", conflicts_with = "step_s")]
     pub published: Option<PathBuf>,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    positive(text, "seconds, such as 0.01")
 }
 
 fn printed(path: &Path) -> Result<Ending, Error> {
