@@ -140,9 +140,9 @@ fn teaching() -> (Chromium, PathBuf) {
 #[ignore = "needs chromium and a report"]
 fn an_arrow_key_on_the_step_changes_the_pictures_and_the_numbers() {
     let (mut browser, file) = teaching();
-    let seen = "['picture', 'energy', 'convergence', 'fourth', 'cost', 'story', 'h-value'].map((id) => document.getElementById(id).innerHTML)";
+    let seen = "['picture', 'track', 'energy', 'convergence', 'fourth', 'cost', 'story', 'h-value'].map((id) => document.getElementById(id).innerHTML)";
     let stops = browser.value("document.querySelectorAll('#stops button').length").as_u64().expect("a number");
-    assert_eq!(stops, 8);
+    assert_eq!(stops, 10);
     for stop in 0..stops {
         browser.value(&format!("document.querySelectorAll('#stops button')[{stop}].click()"));
         browser.value(TWO_FRAMES);
@@ -193,7 +193,7 @@ fn the_page_follows_the_hand() {
     })()";
     let stops = browser.value(redrawn);
     let stops = stops.as_array().expect("a list");
-    assert_eq!(stops.len(), 8);
+    assert_eq!(stops.len(), 10);
     for (stop, seen) in stops.iter().enumerate() {
         let mut took: Vec<f64> = seen["took"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
         took.sort_by(f64::total_cmp);

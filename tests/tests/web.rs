@@ -296,3 +296,76 @@ fn the_page_is_small_and_loads_nothing() {
         assert!(page.contains(&format!("\"{scene}\": {{ title:")), "{scene} has its picture");
     }
 }
+
+/// Positions and velocities of the rows of an answer: of a scene with one coordinate the columns 2 and 3.
+fn states(numbers: &[f64]) -> Vec<[f64; 3]> {
+    let width = numbers[3] as usize;
+    numbers[4..].chunks(width).map(|row| [row[1], row[2], row[3]]).collect()
+}
+
+// Fails if: the kick before the first step is not half of one, or the velocity is read elsewhere than between two kicks.
+#[test]
+fn semi_implicit_euler_with_half_a_kick_is_velocity_verlet() {
+    for (scene, steps) in [("oscillator", 250), ("pendulum", 400)] {
+        let run = |rule: &str| {
+            let (numbers, _) =
+                natively(&format!("run\nscene {scene}\n{rule}\nend_s 10\nsteps {steps}\nstride 7")).expect("a run");
+            states(&numbers)
+        };
+        let (kicked, verlet) = (run("method semi-implicit-euler\nhalf_kick true"), run("method velocity-verlet"));
+        let plain = run("method semi-implicit-euler");
+        assert_eq!(kicked.len(), verlet.len());
+        // Roundings of the steps, each amplified by at most the number of steps, of numbers below 8.
+        let tolerance = f64::from(steps) * f64::from(steps) * f64::EPSILON * 8.0;
+        let apart = |a: &[[f64; 3]], b: &[[f64; 3]]| {
+            a.iter().zip(b).flat_map(|(a, b)| [1, 2].map(|i| (a[i] - b[i]).abs())).fold(0.0, f64::max)
+        };
+        assert!(kicked.iter().zip(&verlet).all(|(a, b)| a[0] == b[0]), "{scene}: times");
+        assert!(apart(&kicked, &verlet) <= tolerance, "{scene}: {:e}", apart(&kicked, &verlet));
+        assert!(apart(&plain, &verlet) > 1e-3, "{scene}: without it the two differ");
+    }
+    for wrong in [
+        "scene bouncing-ball\nhalf_kick true",
+        "scene tennis-racket\nhalf_kick true",
+        "scene oscillator\nmethod rk4\nhalf_kick true",
+    ] {
+        assert!(natively(&format!("run\n{wrong}\nend_s 4\nsteps 100")).is_err(), "{wrong}");
+    }
+}
+
+// Fails if: the steps do not end where they should, do not vary as they should, or a step is taken from another state than the last.
+#[test]
+fn steps_that_vary_end_where_even_ones_do() {
+    let run = |rule: &str, steps: u64| {
+        let (numbers, _) = natively(&format!("run\nscene oscillator\n{rule}\nend_s 8\nsteps {steps}")).expect("a run");
+        states(&numbers)
+    };
+    let varied = run("method rk4\njitter 0.25", 200);
+    assert_eq!((varied.len(), varied[0][0], varied[200][0]), (201, 0.0, 8.0));
+    let lengths: Vec<f64> = varied.windows(2).map(|w| (w[1][0] - w[0][0]) * 25.0).collect();
+    // Uniform in 1 +- 0.25 up to the scaling, by the mean of 200 of them: 0.25 / sqrt(3 x 200) = 0.0102, five times that.
+    let (low, high) = lengths.iter().fold((f64::MAX, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+    assert!((0.70..0.80).contains(&low) && (1.20..1.31).contains(&high), "{low} {high}");
+    // Each state near the exact one at its own time: RK4 errs by less than 1e-6 with these steps.
+    let (w, x0, v0) = (2.0_f64, 0.75, -1.25);
+    for [t, x, _] in &varied {
+        let exact = x0 * (w * t).cos() + v0 / w * (w * t).sin();
+        assert!((x - exact).abs() < 1e-5, "{t}: {x} {exact}");
+    }
+    let even = run("method rk4", 200);
+    assert_ne!(even[100], varied[100]);
+    assert!(natively("run\nscene oscillator\njitter 1\nend_s 4\nsteps 100").is_err());
+}
+
+// Fails if: the module was built from other sources.
+#[test]
+fn loops_have_the_same_bits_in_the_module() {
+    let flat = ids().into_iter().filter(|id| !is_rigid(id) && *id != "bouncing-ball");
+    let rules = ["half_kick true", "method rk4\njitter 0.3", "half_kick true\nprecision f32"];
+    let mut questions = Vec::new();
+    for scene in flat {
+        questions.extend(rules.map(|rule| format!("run\nscene {scene}\n{rule}\nend_s 4\nsteps 300\nstride 9")));
+        questions.push(format!("errors\nscene {scene}\nhalf_kick true\nsteps 128"));
+    }
+    agrees(&questions);
+}

@@ -13,6 +13,7 @@ use scenes::run::{Outcome, Precision, Trajectory};
 use scenes::scheme::Rule;
 use scenes::stepping::{Stepping, spectral_radius};
 
+use crate::loops;
 use crate::question::{Command, Question};
 
 /// The numbers before the rows of a run: outcome (0 finished, 1 diverged, 2 not converged), the step that failed (0 for
@@ -75,6 +76,12 @@ impl Desk {
 }
 
 fn trajectory(scene: &dyn AnyScene, question: &Question) -> Result<Trajectory, Error> {
+    if question.half_kick {
+        return loops::half_kick(scene, question);
+    }
+    if question.jitter > 0.0 {
+        return loops::jittered(scene, question);
+    }
     scene
         .run(&question.run(), question.stride)
         .ok_or_else(|| Error::plan("step", "exists for rigid bodies only; ask with 'method'"))
@@ -84,9 +91,10 @@ fn trajectory(scene: &dyn AnyScene, question: &Question) -> Result<Trajectory, E
 fn rows(scene: &dyn AnyScene, question: &Question, run: &Trajectory) -> Vec<f64> {
     let mut numbers = head(run);
     let h_s = question.end_s / question.steps as f64;
+    let times = if question.jitter > 0.0 { loops::times(question) } else { Vec::new() };
     for (step, seen) in &run.seen {
         let first = numbers.len();
-        let t_s = *step as f64 * h_s;
+        let t_s = times.get(*step as usize).copied().unwrap_or(*step as f64 * h_s);
         numbers.extend([*step as f64, t_s]);
         observed(scene, fx128::lit(t_s), seen, &mut numbers);
         numbers[HEAD - 1] = (numbers.len() - first) as f64;

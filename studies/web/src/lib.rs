@@ -7,6 +7,7 @@
 //! Architecture invariant: no physics and no method here, only `studies`' scenes and runs.
 
 pub mod answer;
+mod loops;
 pub mod question;
 
 use std::cell::RefCell;

@@ -47,6 +47,10 @@ pub struct Question {
     pub stride: u64,
     /// Whether the errors at the checkpoints are wanted too, as in the report; each is an exact motion more to be evaluated.
     pub checkpoints: bool,
+    /// Whether semi-implicit Euler starts with half a kick and is read half a kick back.
+    pub half_kick: bool,
+    /// Part by which the steps vary at random, either way.
+    pub jitter: f64,
     /// Whether the double-double run of the same step is wanted for the rounding errors.
     pub rounding: bool,
 }
@@ -70,6 +74,8 @@ impl Question {
             steps: 1,
             stride: 1,
             checkpoints: false,
+            half_kick: false,
+            jitter: 0.0,
             rounding: false,
         };
         for line in lines {
@@ -78,6 +84,9 @@ impl Question {
         }
         if question.steps == 0 || question.stride == 0 || !(question.end_s.is_finite() && question.end_s > 0.0) {
             return Err(Error::plan("steps, stride, end_s", "must be greater than zero"));
+        }
+        if !(0.0..1.0).contains(&question.jitter) || (question.jitter > 0.0 && question.half_kick) {
+            return Err(Error::plan("jitter", "must be from 0 to below 1, and 0 beside half_kick"));
         }
         Ok(question)
     }
@@ -98,6 +107,8 @@ impl Question {
             "steps" => self.steps = number(key, value)?,
             "stride" => self.stride = number(key, value)?,
             "checkpoints" => self.checkpoints = number(key, value)?,
+            "half_kick" => self.half_kick = number(key, value)?,
+            "jitter" => self.jitter = number(key, value)?,
             "rounding" => self.rounding = number(key, value)?,
             _ => return Err(Error::unknown("key", key, KEYS.map(str::to_owned))),
         }
@@ -114,7 +125,7 @@ impl Question {
     }
 }
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 14] = [
     "scene",
     "set",
     "method",
@@ -126,6 +137,8 @@ const KEYS: [&str; 12] = [
     "steps",
     "stride",
     "checkpoints",
+    "half_kick",
+    "jitter",
     "rounding",
 ];
 

@@ -5,7 +5,7 @@ const METHODS = DATA.methods.map((m) => ({ ...m, keys: { method: m.id } }));
 const LOOKS = 360;
 // So many steps over the picture in double-double, and no more.
 const SLOW_STEPS = 400;
-const state = { scene: "oscillator", methods: [], precision: "f64", storage: "world-omega", h: 0.05, set: {}, stop: 0 };
+const state = { scene: "oscillator", methods: [], precision: "f64", storage: "world-omega", h: 0.05, set: {}, stop: 0, substeps: 1, jitter: 0 };
 const scenes = {};
 let ask, scene, wanted = false;
 const cache = new Map();
@@ -20,9 +20,11 @@ const values = () => Object.fromEntries(scene.parameters.map((p) => {
   return [p.name, list.length > 1 ? list : list[0]];
 }));
 const settings = () => Object.entries({ ...scene.set, ...state.set }).map(([name, value]) => `${name}=${value}`);
-const entries = () => (scene.rigid ? METHODS.map((m) => (state.storage === "world-omega" ? m : { ...m, keys: { ...m.keys, storage: state.storage } })).concat(RIGID) : METHODS);
+const entries = () => (scene.rigid ? METHODS.map((m) => (state.storage === "world-omega" ? m : { ...m, keys: { ...m.keys, storage: state.storage } })).concat(RIGID) : scene.picture === "height" ? METHODS : METHODS.concat(FLAT));
 const chosen = () => entries().filter((m) => state.methods.includes(m.id));
-const color = (m) => `m${[...METHODS, ...RIGID].findIndex((x) => x.id === m.id)}`;
+// Steps that vary: on springs, where a step needs nothing but the state before it.
+const varied = (m) => (state.jitter > 0 && scene.springs && !m.keys.half_kick ? { jitter: state.jitter } : {});
+const color = (m) => `m${[...METHODS, ...RIGID, ...FLAT].findIndex((x) => x.id === m.id)}`;
 // A free body's exact attitude takes a millisecond a look.
 const looks = () => (scene.rigid ? 180 : LOOKS);
 const stepsTo = (end, h) => Math.max(1, Math.round(end / h));
@@ -31,18 +33,20 @@ const stepsTo = (end, h) => Math.max(1, Math.round(end / h));
 function exact() {
   return kept(["exact", state.scene, settings()].join(), () => {
     const { rows } = table(ask("exact", { scene: state.scene, set: settings(), end_s: scene.end, steps: looks() }));
-    const energy = scene.balance("energy"), see = pictured(scene, values());
-    return { points: rows.map(see), energy: rows.map((r) => [r[1], r[energy.from] / rows[0][energy.from]]), rows };
+    const energy = scene.balance("energy"), see = pictured(scene, values()), { of } = followedOf(scene, values());
+    return { points: rows.map(see), track: rows.map((r) => [r[1], of(r)]), energy: rows.map((r) => [r[1], r[energy.from] / rows[0][energy.from]]), rows };
   });
 }
 
 // A run over the whole picture.
-function run(m, steps) {
-  const end_s = steps * view.h, keys = { scene: state.scene, set: settings(), ...m.keys, precision: state.precision, end_s, steps, stride: Math.ceil(steps / looks()) };
+function run(m, steps, loop = varied(m)) {
+  const end_s = steps * view.h, keys = { scene: state.scene, set: settings(), ...m.keys, ...loop, precision: state.precision, end_s, steps, stride: Math.ceil(steps / looks()) };
   const result = table(ask("run", keys)), { rows } = result, truth = exact();
   const energy = scene.balance("energy"), e0 = rows[0][energy.from], see = pictured(scene, values());
   const finite = rows.filter((r) => Number.isFinite(r[energy.from]));
   result.points = rows.map(see);
+  const { of } = followedOf(scene, values());
+  result.track = rows.map((r) => [r[1], of(r)]);
   result.energy = finite.map((r) => [r[1], r[energy.from] / e0]);
   result.lastRatio = result.outcome === "finished" ? result.energy.at(-1)[1] : Infinity;
   const against = energy.conserved ? () => 1 : (t) => truth.energy[Math.min(looks(), Math.round((t / scene.end) * looks()))][1];
@@ -65,16 +69,17 @@ const largest = (list) => list.reduce((a, b) => Math.max(a, b), 0);
 
 // The error of the first quantity at the scene's horizon with a step near h, as the convergence study measures it.
 function errorOf(m, steps, precision = state.precision) {
-  return kept(["error", state.scene, settings(), JSON.stringify(m.keys), precision, steps].join(), () => {
-    const { rows, evaluations } = table(ask("errors", { scene: state.scene, set: settings(), ...m.keys, precision, steps }));
+  const keys = { ...m.keys, ...varied(m) };
+  return kept(["error", state.scene, settings(), JSON.stringify(keys), precision, steps].join(), () => {
+    const { rows, evaluations } = table(ask("errors", { scene: state.scene, set: settings(), ...keys, precision, steps }));
     return { h: scene.horizon_s / steps, error: rows[0][0], evaluations };
   });
 }
 
 // The convergence line: the report's rows, or runs of this browser where the report has none.
 function line(m) {
-  const precision = state.precision, own = Object.keys(state.set).length === 0 && m.keys.method && !m.keys.storage;
-  return kept(["line", state.scene, settings(), JSON.stringify(m.keys), precision].join(), () => {
+  const precision = state.precision, own = Object.keys(state.set).length === 0 && m.keys.method && !m.keys.storage && !m.keys.half_kick;
+  return kept(["line", state.scene, settings(), JSON.stringify({ ...m.keys, ...varied(m) }), precision].join(), () => {
     const quantity = DATA.quantities.indexOf(scene.quantities[0].id), method = METHODS.findIndex((x) => x.id === m.id);
     const [s, p] = [DATA.scenes.findIndex((x) => x.id === state.scene), DATA.precisions.indexOf(precision)];
     const rows = own ? DATA.rows.filter((r) => r[0] === s && r[1] === method && r[2] === p && r[4] === quantity) : [];
@@ -113,6 +118,10 @@ const view = {
   ofReport: () => view.entries.every((m) => line(m).reported),
   changed: () => Object.keys(state.set).length > 0,
   precision: () => state.precision,
+  // The same run with even steps.
+  even: (m) => run(m, view.steps, {}),
+  substeps: () => state.substeps,
+  jitter: () => (scene.springs ? state.jitter : 0),
   values: () => values(),
   best: (m) => line(m).points.filter((p) => p.error !== null).reduce((a, b) => (b.error < a.error ? b : a)),
   radius: (id) => radiusAt(METHODS.find((m) => m.id === id)),
@@ -127,7 +136,7 @@ const view = {
 function look() {
   view.scene = scene;
   view.there = null;
-  view.h = state.h;
+  view.h = state.h / state.substeps;
   // The run ends with a whole step, near the end of the picture.
   view.steps = stepsTo(scene.end, view.h);
   view.omega = scene.omega ? scene.omega(values()) : NaN;
@@ -144,8 +153,11 @@ function want() {
     const from = performance.now();
     look();
     draw();
+    drawMotion();
+    tellMotion();
+    history.replaceState(null, "", written());
     const took = performance.now() - from;
     $("speed").textContent = `Computed and drawn in ${took.toFixed(1)} ms: ${counted(view.entries.length, "run")} of ${counted(view.steps, "step")}.`;
-    window.teach = { took, h: view.h, steps: view.steps };
+    window.teach = { ...window.teach, took, h: view.h, steps: view.steps };
   });
 }

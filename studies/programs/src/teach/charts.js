@@ -8,7 +8,7 @@ function short(x) {
   if (x === 0) return "0";
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
   const size = Math.abs(x);
-  if (size >= 1e-3 && size < 1e5) return x.toPrecision(4).replace(/\.?0+$/, (z) => (x.toPrecision(4).includes(".") ? "" : z)).replace("-", "−");
+  if (size >= 1e-3 && size < 9999.5) return x.toPrecision(4).replace(/\.?0+$/, (z) => (x.toPrecision(4).includes(".") ? "" : z)).replace("-", "−");
   const [m, e] = x.toExponential(2).split("e");
   return `${m}·10${superscript(+e)}`.replace(/^-/, "−");
 }

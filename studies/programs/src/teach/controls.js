@@ -15,7 +15,9 @@ function choose(id) {
 function setStep(h) {
   limit();
   $("h").value = slide(h);
-  slid();
+  // A step that was asked for is kept as it is; the slider stands at the nearest of its places.
+  const [low, high] = scene.h, n = +$("h").max, first = low * (high / low) ** ($("h").min / n);
+  state.h = Math.max(first, Math.min(high, h));
 }
 
 function slid() {
@@ -35,6 +37,10 @@ function fill() {
   $("scene").value = state.scene;
   $("precision").value = state.precision;
   $("storage").value = state.storage;
+  $("substeps").value = state.substeps;
+  $("jitter").value = Math.round(100 * state.jitter);
+  $("varies").hidden = !scene.springs;
+  told();
   $("stored").hidden = !scene.rigid;
   const chip = (m) => `<label class="chip"><input type="checkbox" value="${m.id}"${state.methods.includes(m.id) ? " checked" : ""}>
     <i class="swatch ${color(m)}"></i>${escaped(m.title)}</label>`;
@@ -45,11 +51,13 @@ function fill() {
   $("refused").textContent = "";
 }
 
+const told = () => { $("jitter-value").textContent = `± ${Math.round(100 * state.jitter)} %`; };
+
 function go(stop) {
-  const { set, question } = STOPS[stop];
+  const { set, question } = STOPS[stop], { precision, substeps, jitter } = settled(set);
   state.stop = stop;
   choose(set.scene);
-  Object.assign(state, { methods: set.methods, precision: set.precision ?? "f64" });
+  Object.assign(state, { methods: set.methods, precision, substeps, jitter });
   fill();
   setStep(set.h);
   $("question").textContent = question;
@@ -79,6 +87,11 @@ function listen() {
   $("h").addEventListener("input", () => { slid(); want(); });
   $("scene").addEventListener("change", () => { choose($("scene").value); fill(); setStep(Math.sqrt(scene.h[0] * scene.h[1])); want(); });
   $("precision").addEventListener("change", () => { state.precision = $("precision").value; setStep(state.h); want(); });
+  $("substeps").addEventListener("change", () => { state.substeps = +$("substeps").value; want(); });
+  $("jitter").addEventListener("input", () => { state.jitter = $("jitter").value / 100; told(); want(); });
+  $("save").addEventListener("click", save);
+  addEventListener("hashchange", () => followed(location.hash));
+  listenMotion();
   $("storage").addEventListener("change", () => { state.storage = $("storage").value; want(); });
   $("methods").addEventListener("change", () => { state.methods = [...$("methods").querySelectorAll(":checked")].map((c) => c.value); want(); });
   $("fields").addEventListener("change", (event) => parameter(event.target));
@@ -143,8 +156,9 @@ async function main() {
   $("storage").innerHTML = Object.entries(STORED).map(([id, text]) => option(id, text)).join("");
   ask = await start(module);
   listen();
-  const asked = /^#stop-([1-8])$/.exec(location.hash);
-  go(asked ? asked[1] - 1 : 0);
+  $("substeps").innerHTML = LOOP.substeps.map((n) => option(n, n)).join("");
+  followed(location.hash);
+  play(!still.matches);
   // First the picture, then the proof.
   setTimeout(() => { try { recompute(module); } catch (error) { unchecked(error.message); } }, 300);
 }

@@ -1,14 +1,16 @@
-// The four charts, the table and the story, from what `look` found.
+// The charts, the table and the story, from what `look` found.
 const inParts = (x) => (x === Infinity ? "without bound" : short(x));
 
 function draw() {
   const runs = view.entries.map((m) => [m, view.runs[m.id]]);
   drawPicture(runs);
+  drawTrack(runs);
   drawEnergy(runs);
   drawConvergence(runs);
   drawFourth(runs);
   drawTable(runs);
-  $("h-value").textContent = `h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${counted(view.steps, "step")}`;
+  const frame = state.substeps > 1 ? `${short(state.h)} s in ${state.substeps} substeps: ` : "";
+  $("h-value").textContent = `${frame}h = ${short(view.h)} s${Number.isFinite(view.homega) ? `, ωh = ${view.homega.toPrecision(3)}` : ""}, ${counted(view.steps, "step")}`;
   $("h").setAttribute("aria-valuetext", `${short(view.h)} seconds`);
   const stop = STOPS[state.stop], own = stop.set.scene === state.scene && stop.set.methods.every((id) => state.methods.includes(id));
   $("story").innerHTML = `<p>${own ? stop.story(view) : "You have left the path, and everything stays live: choose, drag, compare. “Start over” takes you back."}</p>`;
@@ -39,6 +41,16 @@ function drawPicture(runs) {
   const x = { ...part(0), label: labels[0] }, y = { ...part(1), label: labels[1] };
   if (scene.picture === "height") Object.assign(x, { from: 0, to: scene.end });
   chart(svg, { x, y, series, marks, square: scene.picture === "orbit" || scene.picture === "circle", name });
+}
+
+function drawTrack(runs) {
+  const { title, note, label } = followedOf(scene, values()), truth = exact().track, svg = $("track");
+  $("track-title").textContent = title;
+  $("track-note").textContent = note;
+  const y = { ...extent(truth.map((p) => p[1]), runs.flatMap(([, r]) => r.track.map((p) => p[1]))), label };
+  const series = [{ points: truth, css: "exact" }, ...runs.map(([m, r]) => ({ points: r.track, css: color(m), dots: view.steps <= 60 }))];
+  const ends = runs.map(([m, r]) => `${m.title} ${r.outcome === "finished" ? short(r.track.at(-1)[1]) : r.outcome}`).join(", ");
+  chart(svg, { x: { from: 0, to: scene.end, label: "time (s)" }, y, series, name: `${title} against time: at the end exact ${short(truth.at(-1)[1])}, ${ends}` });
 }
 
 function drawEnergy(runs) {
@@ -108,7 +120,7 @@ function drawTable(runs) {
   const heads = [`evaluations in ${scene.end}&nbsp;s`, "largest change of energy", `error after ${scene.horizon_s}&nbsp;s (${q.unit})`, `error with half the step&nbsp;(${q.unit})`];
   const head = (text) => `<th scope="col" class="right">${text}</th>`;
   $("cost-head").innerHTML = `<tr><th scope="col">Method</th>${heads.map(head).join("")}<th scope="col">run</th></tr>`;
-  const bar = (m, r) => `<i class="bar ${color(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
+  const bar = (m, r) => r.evaluations === 0 ? "–" : `<i class="bar ${color(m)}" style="width:${((r.evaluations / most) * 5).toFixed(2)}rem"></i>${r.evaluations}`;
   const line = ([m, r]) => `<tr><th scope="row"><i class="swatch ${color(m)}"></i>${escaped(m.title)}</th>
     ${[bar(m, r), inParts(r.energyChange), short(view.error(m)), short(view.error(m, 2))].map((cell) => `<td class="right">${cell}</td>`).join("")}
     <td>${r.outcome === "finished" ? "finished" : `${r.outcome} at step ${r.failedStep}`}</td></tr>`;

@@ -23,12 +23,14 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const BRIDGE: &str = include_str!("bridge.js");
 const WORKER: &str = include_str!("badge.js");
-const SCRIPT: [&str; 6] = [
+const SCRIPT: [&str; 8] = [
     include_str!("charts.js"),
     include_str!("scenes.js"),
     include_str!("stops.js"),
     include_str!("app.js"),
     include_str!("draw.js"),
+    include_str!("motion.js"),
+    include_str!("address.js"),
     include_str!("controls.js"),
 ];
 

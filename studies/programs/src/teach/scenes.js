@@ -15,9 +15,12 @@ const QUANTITY = { "position": "position", "velocity": "velocity", "attitude": "
 const STORED = { "world-omega": "angular velocity, world frame", "body-omega": "angular velocity, body frame", "world-momentum": "angular momentum" };
 // Only for a rigid body: beside the six methods, two that are for it alone.
 const RIGID = [
-  { id: "no-gyroscopic-term", title: "Semi-implicit Euler, no gyroscopic term", keys: { method: "semi-implicit-euler", storage: "without-gyroscopic-term" } },
-  { id: "free-splitting", title: "Splitting into axis rotations", keys: { step: "free-splitting" } },
+  { id: "no-gyroscopic-term", title: "Semi-implicit Euler, no gyroscopic term", name: "no gyroscopic term", keys: { method: "semi-implicit-euler", storage: "without-gyroscopic-term" } },
+  { id: "free-splitting", title: "Splitting into axis rotations", name: "axis rotations", keys: { step: "free-splitting" } },
 ];
+
+// Only on a flat scene without kinks: the velocity is moved by half a kick before the run, and read half a kick back.
+const FLAT = [{ id: "half-kick", title: "Semi-implicit Euler, half a kick", name: "half a kick", keys: { method: "semi-implicit-euler", half_kick: true } }];
 
 // The body axis in the world: column `axis` of the rotation of the unit quaternion (w, x, y, z).
 function bodyAxis([w, x, y, z], axis) {
@@ -54,6 +57,7 @@ function described(ask, id) {
     else if (kind === "balance") { scene.balances.push({ id: rest[0], unit: rest[1], from: column, width: +rest[2], conserved: rest[3] === "conserved" }); column += +rest[2]; }
   }
   scene.rigid = scene.quantities.some((q) => q.id === "attitude" && q.width === 4);
+  scene.springs = id.endsWith("oscillator");
   scene.balance = (id) => scene.balances.find((b) => b.id === id);
   return scene;
 }
@@ -70,6 +74,16 @@ function pictured(scene, values) {
   const [a, b] = across(values.magnetic);
   const dot = (row, e) => e[0] * row[q.from] + e[1] * row[q.from + 1] + e[2] * row[q.from + 2];
   return (row) => [dot(row, a), dot(row, b)];
+}
+
+// What the chart over the time shows of a row, and what it is.
+function followedOf(scene, values) {
+  const [q, v] = scene.quantities, see = pictured(scene, values);
+  if (scene.picture === "height") return { label: "velocity (m/s)", title: "Velocity", note: "against time; grey: exact", of: (row) => row[v.from] };
+  if (scene.picture === "sphere") return { label: "upward part of the axis", title: "The body's axis", note: "its upward part, against time; grey: exact", of: (row) => see(row)[2] };
+  const name = { phase: QUANTITY[q.id], orbit: "x", circle: "across the field" }[scene.picture];
+  const title = scene.picture === "phase" ? name[0].toUpperCase() + name.slice(1) : "Position";
+  return { label: `${name} (${q.unit})`, title, note: `${scene.picture === "phase" ? "" : `${name}, `}against time; grey: exact`, of: (row) => see(row)[0] };
 }
 
 const PICTURE = {

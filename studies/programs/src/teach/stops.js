@@ -1,4 +1,4 @@
-// The guided path: eight questions. Each sets the page and says what to see; every number in it follows what the page is set to.
+// The guided path: ten questions. Each sets the page and says what to see; every number in it follows what the page is set to.
 const code = (text) => `<span class="num">${escaped(text)}</span>`;
 const times = (x) => code(`${short(x)}×`);
 const DIGITS = { "f32": "seven digits", "f64": "sixteen digits", "double-double": "thirty-one digits" };
@@ -54,10 +54,15 @@ const STOPS = [
     title: "The cliff", question: "What happens at ωh = 2?",
     set: { scene: "oscillator", methods: ["semi-implicit-euler", "velocity-verlet", "rk4"], h: 0.982 },
     story(v) {
-      const r = v.radius("semi-implicit-euler");
-      return `Now ωh = ${code(v.homega.toPrecision(4))}. One step of semi-implicit Euler stretches the worst direction by
-        ${code(r.toPrecision(6))}${r > 1 + 1e-9 ? `, and ${code(v.steps)} of them by ${times(r ** v.steps)}: it is over the cliff.` : ": nothing grows yet, though the motion is nonsense."}
-        Press → on the slider, once or twice. There is no warning before 2 and no mercy after it: the stiffest spring of a scene decides the step for all of it.`;
+      const r = v.radius("semi-implicit-euler"), x = v.homega, run = v.runs["semi-implicit-euler"];
+      if (!run) return "Choose semi-implicit Euler again: it is the one that falls here.";
+      const grows = r > 1 + 1e-9;
+      return `Now ωh = ${code(x.toPrecision(4))}. One step of semi-implicit Euler stretches the worst direction by
+        ${code(r.toPrecision(6))}${grows ? `, and ${code(v.steps)} of them by ${times(r ** v.steps)}: it is over the cliff.` : ": nothing grows."}
+        ${grows ? "" : `The energy warns all the same: its largest value over its smallest is ${times(Math.max(...ratioOf(run)) / Math.min(...ratioOf(run)))} here,
+        at most ((2 + ωh)/(2 − ωh)) = ${times((2 + x) / (2 - x))}, a band that has no upper end as ωh nears 2.`}
+        Press → on the slider, once or twice. The factor of a step stays exactly 1 up to 2 and tells nothing; the band of the energy does. The
+        stiffest spring of a scene decides the step for all of it.`;
     },
   },
   {
@@ -101,6 +106,37 @@ const STOPS = [
         planet passes its sun after ${code(short(first))} s, and passing takes only ${code(short(v.scene.time_scale_s))} s: your step is
         ${code(short(v.h / v.scene.time_scale_s))} of that. Over ${code(v.scene.end)} s the energy changes by up to ${v.entries.map(change).join(", ")} of itself, and the
         energy chart shows when: at each passing. Ask for the shortest time of your scene, and for what must not drift; then drag.`;
+    },
+  },
+  {
+    title: "The loop", question: "What do substeps and a loop that stutters do?",
+    set: { scene: "oscillator", methods: ["semi-implicit-euler", "rk4"], h: 0.7, jitter: 0.25 },
+    story(v) {
+      const m = v.entries.find((one) => one.id === "semi-implicit-euler");
+      if (!m) return "Choose semi-implicit Euler again: it shows what the loop does.";
+      const top = (run) => Math.max(...ratioOf(run)), vary = v.jitter();
+      const loop = vary > 0
+        ? `The steps vary by up to ${code(Math.round(100 * vary))} % either way, as frames do, and the energy rises to ${times(top(v.runs[m.id]))} its start; with even
+          steps of the same mean length to ${times(top(v.even(m)))}. The ellipse that each step keeps leans as its step says, so that steps of many lengths
+          keep none: errors grow though no step is over the limit.`
+        : `All steps are alike now, and the energy stays below ${times(top(v.runs[m.id]))} its start. Let the steps vary to see what a loop that stutters does.`;
+      return `A frame of ${code(short(v.h * v.substeps()))} s, in ${code(counted(v.substeps(), "step"))} of ωh = ${code(v.homega.toPrecision(3))}. ${loop}
+        Choose more substeps: each halves the error of a method of order 1, and costs twice the evaluations. Or keep the step fixed and let the picture wait.`;
+    },
+  },
+  {
+    title: "Half a kick", question: "Which method is half a kick away?",
+    set: { scene: "pendulum", methods: ["semi-implicit-euler", "half-kick", "velocity-verlet"], h: 0.1 },
+    story(v) {
+      const of = (id) => v.entries.find((one) => one.id === id), [plain, half, verlet] = ["semi-implicit-euler", "half-kick", "velocity-verlet"].map(of);
+      if (!plain || !half || !verlet) return "Choose all three again to compare them.";
+      const [a, b] = [half, verlet].map((m) => v.runs[m.id].points);
+      const apart = largest(a.map((p, i) => Math.hypot(p[0] - b[i][0], p[1] - b[i][1])));
+      const part = (m) => `${escaped(m.title)} ${code(short(v.error(m)))} → ${code(short(v.error(m, 2)))}`;
+      return `Take half a kick from the velocity, run semi-implicit Euler, and read each velocity half a kick later, in the middle between two steps:
+        q and v are then those of velocity Verlet, here to ${code(short(apart))} over ${code(v.steps)} steps. Not a step has changed, but the error
+        after ${code(v.scene.horizon_s)} s with this step and with half of it is: ${[plain, half, verlet].map(part).join("; ")} rad. An order gained for one
+        kick: the first-order error of semi-implicit Euler was in where its velocity is read.`;
     },
   },
 ];
