@@ -1,5 +1,6 @@
-//! A new method is one file and one row, and so is a new scene: a copy of the tree gets a general method, a step for rigid bodies
-//! and a scene of four dimensions, and every study runs with them. Nothing is known of the three but what their files state.
+//! A new method is one file and one row, and so is a new scene: a copy of the tree gets the files of the guide `adding.md` as they are
+//! written there, a general method, a step for rigid bodies, a scene of four dimensions and a rigid one, and every study runs with them.
+//! Nothing is known of the four but what their files state.
 //!
 //! Ignored, because it compiles the workspace again: `cargo test --release -p verification --test adding -- --ignored`.
 //! The copy lies in `target/adding` and is compiled only where it changed.
@@ -17,21 +18,34 @@ const METHOD: &str = "explicit-midpoint";
 const STEP: &str = "mean-omega";
 const SCENE: &str = "oscillator-in-four";
 
-/// The new files, and where they go.
-const FILES: [(&str, &str); 3] = [
-    ("integrator/src/methods/explicit_midpoint.rs", include_str!("../data/adding/explicit_midpoint.rs")),
-    ("integrator/src/methods/mean_omega.rs", include_str!("../data/adding/mean_omega.rs")),
-    ("studies/scenes/src/catalogue/oscillator_in_four.rs", include_str!("../data/adding/oscillator_in_four.rs")),
-];
+const BODY: &str = "braked-spin";
+const GUIDE: &str = include_str!("../../reports/guides/adding.md");
+
+/// The new files of the guide: a line with the path, then the block of code.
+fn new_files() -> Vec<(String, String)> {
+    let blocks = GUIDE.split("```rust\n").collect::<Vec<_>>();
+    let of = |pair: &[&str]| {
+        let path = pair[0].trim_end().lines().last().unwrap_or_default().trim_matches(['`', ':']).to_owned();
+        (path, pair[1].split("```").next().unwrap_or_default().to_owned())
+    };
+    blocks.windows(2).map(of).collect()
+}
 
 /// The lines that name them: file, the line before, the line. Of a list in one line the line itself grows.
-const LINES: [(&str, &str, &str); 9] = [
+const LINES: [(&str, &str, &str); 12] = [
     (METHODS, "mod explicit_euler;\n", "mod explicit_midpoint;\n"),
     (METHODS, "pub use explicit_euler::ExplicitEuler;\n", "pub use explicit_midpoint::ExplicitMidpoint;\n"),
     (METHODS, "core explicit: ExplicitEuler, SemiImplicitEuler, VelocityVerlet, Rk4", ", ExplicitMidpoint"),
     (METHODS, "mod kutta3;\n", "mod mean_omega;\n"),
     (METHODS, "pub use kutta3::Kutta3;\n", "pub use mean_omega::MeanOmega;\n"),
     (METHODS, "        FreeSplitting, BodyOmega, Body;\n", "        MeanOmega, BodyOmega, Body;\n"),
+    (CATALOGUE, "pub mod box_tumbling;\n", "pub mod braked_spin;\n"),
+    (CATALOGUE, "pub use box_tumbling::BoxTumbling;\n", "pub use braked_spin::BrakedSpin;\n"),
+    (
+        CATALOGUE,
+        "    \"box-tumbling\" => Rigid(BoxTumbling::default());\n",
+        "    \"braked-spin\" => Rigid(BrakedSpin::default());\n",
+    ),
     (CATALOGUE, "pub mod oscillator;\n", "pub mod oscillator_in_four;\n"),
     (CATALOGUE, "pub use oscillator::Oscillator;\n", "pub use oscillator_in_four::OscillatorInFour;\n"),
     (
@@ -68,8 +82,8 @@ fn extended() -> (BTreeMap<String, Vec<u8>>, BTreeSet<&'static str>) {
         let at = content.find(before).unwrap_or_else(|| panic!("{file} has no line {before:?}")) + before.len();
         files.insert(file.to_owned(), [&content[..at], line, &content[at..]].concat().into_bytes());
     }
-    for (file, content) in FILES {
-        assert!(files.insert(file.to_owned(), content.into()).is_none(), "{file} is there already");
+    for (file, content) in new_files() {
+        assert!(files.insert(file.clone(), content.into()).is_none(), "{file} is there already");
     }
     (files, changed)
 }
@@ -102,6 +116,32 @@ fn write(directory: &Path, files: &BTreeMap<String, Vec<u8>>) {
 fn has_row(out: &Path, file: &str, words: &[&str]) -> bool {
     let rows = fs::read_to_string(out.join(file)).unwrap_or_default();
     rows.lines().any(|row| words.iter().all(|word| row.split(',').any(|cell| cell == *word)))
+}
+
+// Fails if: the guide has another line than the copy gets, or names a place where nothing is registered.
+#[test]
+fn the_guide_shows_every_line_that_names_the_new_files() {
+    let names: Vec<String> = new_files().into_iter().map(|(path, _)| path).collect();
+    assert_eq!(names.len(), 4, "{names:?}");
+    for (file, _, line) in LINES {
+        assert!(GUIDE.contains(line.trim_matches(['\n', ' '])), "the guide does not show '{line}' of {file}");
+        assert!(GUIDE.contains(&format!("`{file}`")), "the guide does not name {file}");
+    }
+    let (files, changed) = extended();
+    assert_eq!(changed, BTreeSet::from([METHODS, CATALOGUE]), "one list of methods, one of scenes");
+    for name in names {
+        // As rustfmt writes it: whoever copies it finds it as the workspace wants it.
+        let scratch = tempfile::tempdir().expect("a temporary directory");
+        let (copy, settings) = (scratch.path().join("new.rs"), root().join("rustfmt.toml"));
+        fs::write(&copy, &files[&name]).expect("writable");
+        let output = Command::new("rustfmt")
+            .args(["--check", "--edition", "2024", "--config-path"])
+            .arg(settings)
+            .arg(&copy)
+            .output()
+            .expect("rustfmt is a component of the toolchain");
+        assert!(output.status.success(), "{name} is not formatted\n{}", text(&output.stdout));
+    }
 }
 
 // Fails if: a match names every method; a scene's dimension is one of a list; theory that was not worked out is promised; the
@@ -143,6 +183,10 @@ fn every_study_runs_with_a_method_a_step_and_a_scene_that_are_one_file_and_one_r
         ("stability.limit.csv", &[SCENE, METHOD]),
         ("tradeoff.run.csv", &[SCENE, METHOD]),
         ("tradeoff.run.csv", &["torque-free-spin", STEP]),
+        ("convergence.csv", &[BODY, METHOD]),
+        ("convergence.csv", &[BODY, "rk4"]),
+        ("rotation.csv", &[BODY, STEP]),
+        ("tradeoff.run.csv", &[BODY, STEP]),
     ] {
         assert!(has_row(&out, file, words), "{file} has no row of {words:?}");
     }
@@ -151,5 +195,6 @@ fn every_study_runs_with_a_method_a_step_and_a_scene_that_are_one_file_and_one_r
     run("ensemble", &["--quick", "--scene", "kepler", "--method", METHOD, "--members", "64"]);
     run("tradeoff", &["--scene", SCENE, "--method", METHOD, "--error", "1e-3"]);
     run("stability", &["--scene", SCENE, "--method", METHOD]);
+    run("convergence", &["--scene", BODY, "--scene", SCENE]);
     run("bounds", &["--quick"]);
 }
