@@ -14,15 +14,20 @@
 //! - The same input gives the same bytes: no clock, no random number, no font of the machine, no hash order.
 //! - Nothing but [`files`] touches the disk.
 //! - Drawings name looks by class; colours and line styles stand in one list.
+//! - The feature `pages` (on by default) has what draws. Without it a crate that only measures pulls in no chart library.
 //! - A value that cannot be drawn (NaN, infinite, not positive on a logarithmic axis) is left out, never moved.
 
 pub mod claim;
 pub mod error;
 pub mod figure;
 pub mod files;
+#[cfg(feature = "pages")]
 pub mod formula;
+#[cfg(feature = "pages")]
 pub mod page;
+#[cfg(feature = "pages")]
 pub mod plot;
+#[cfg(feature = "pages")]
 mod png;
 pub mod table;
 
@@ -30,8 +35,12 @@ pub use claim::{Claim, Verdict, exit_code};
 pub use error::Error;
 pub use figure::{Axis, AxisName, Cells, Figure, Layer, Line, Marker, Palette, Scale, Series};
 pub use files::OutputDir;
+#[cfg(feature = "pages")]
 pub use formula::mathml;
+#[cfg(feature = "pages")]
 pub use page::{Block, Finding, Page, Section};
+#[cfg(feature = "pages")]
 pub use plot::svg;
+#[cfg(feature = "pages")]
 pub use png::{DRAWS_PNG, png};
 pub use table::{Align, Table, columns_of_csv, read_csv, read_csv_with, write_csv};

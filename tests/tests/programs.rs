@@ -199,14 +199,14 @@ fn bounds_ends_with_0_1_or_2_and_says_where() {
     let small = ["--quick", "--scene", "oscillator", "--method", "rk4"];
     let good = bounds(&small);
     assert_eq!(good.status.code(), Some(0), "{}{}", text(&good.stdout), text(&good.stderr));
-    assert!(text(&good.stdout).contains("bounds hold, 0 broken, 0 not tested"), "{}", text(&good.stdout));
+    assert!(text(&good.stdout).starts_with("0 bounds are broken, "), "{}", text(&good.stdout));
 
     let row = "oscillator,rk4,f64,position,error-at-step,64,2.75,m,4e-4,1e-2,2e-3,measured x 5: a test,";
     let header = "scene,method,precision,quantity,kind,steps,end_s,unit,low,high,measured,reason,mutant";
     fs::write(&path, format!("{header}\n{row}\n# end: 1 rows\n")).expect("written");
     let broken = bounds(&["--bounds", file, "--junit", xml]);
     assert_eq!(broken.status.code(), Some(1), "{}", text(&broken.stderr));
-    assert!(text(&broken.stdout).starts_with("broken bound"), "{}", text(&broken.stdout));
+    assert!(text(&broken.stdout).starts_with("1 bounds are broken, 0 hold"), "{}", text(&broken.stdout));
     assert!(fs::read_to_string(&junit).expect("written").contains("failures=\"1\""));
 
     let refused = bounds(&["--bounds", file, "--update"]);

@@ -126,3 +126,12 @@ fn the_case_of_every_scene_is_what_its_schema_says() {
         scenes::IDS.iter().map(|id| json("exact", &["--scene", id, "--case"], directory.path())).collect();
     assert_fits("case", &cases);
 }
+
+// Fails if: the JSON of `bounds` changes without its schema.
+#[test]
+fn the_json_of_bounds_is_what_its_schema_says() {
+    let small = ["--quick", "--scene", "oscillator", "--method", "rk4", "--format", "json"];
+    let rows = json("bounds", &small, &root());
+    assert!(rows.as_array().is_some_and(|rows| rows.len() > 3), "{rows}");
+    assert_fits("bounds", &[rows]);
+}

@@ -20,6 +20,11 @@ pub trait Candidate: Sync {
     /// Runs a scene; `None` where it cannot.
     fn run(&self, ask: &Ask<'_>) -> Option<Trajectory>;
 
+    /// The method's name in the rows that it is held to; on rigid bodies with what is stored.
+    fn rows_of(&self, method: &str) -> String {
+        method.to_owned()
+    }
+
     /// The largest stable step on a scene; `None` where it cannot be asked.
     fn limit(&self, scene: &dyn AnyScene, precision: Precision) -> Option<Found> {
         let _ = (scene, precision);
@@ -59,6 +64,9 @@ impl<A: OnFlatScenes> Candidate for Flat<A> {
 }
 
 impl<A: OnWorldOmega> Candidate for InWorld<A> {
+    fn rows_of(&self, method: &str) -> String {
+        stored(method, "world-omega")
+    }
     fn run(&self, ask: &Ask<'_>) -> Option<Trajectory> {
         let clock = clock(ask)?;
         match ask.scene.any_motion() {
@@ -70,6 +78,9 @@ impl<A: OnWorldOmega> Candidate for InWorld<A> {
 }
 
 impl<A: OnBodyOmega> Candidate for InBody<A> {
+    fn rows_of(&self, method: &str) -> String {
+        stored(method, "body-omega")
+    }
     fn run(&self, ask: &Ask<'_>) -> Option<Trajectory> {
         let clock = clock(ask)?;
         match ask.scene.any_motion() {
@@ -78,6 +89,11 @@ impl<A: OnBodyOmega> Candidate for InBody<A> {
             _ => None,
         }
     }
+}
+
+/// A plain name with what is stored behind it; a name that says so already as it is.
+fn stored(method: &str, what: &str) -> String {
+    if method.contains('/') { method.to_owned() } else { format!("{method}/{what}") }
 }
 
 /// Methods from outside run in f64.

@@ -1,7 +1,5 @@
 //! Rows against runs.
 
-use std::fmt::Write;
-
 use reports::{Table, Verdict};
 
 use super::candidate::Candidate;
@@ -10,6 +8,7 @@ use super::numbers::{Measured, Runs};
 use super::row::Row;
 use super::stepper::Stepper;
 use measure::error::Error;
+use measure::study::distinct;
 use measure::sweep::{Progress, in_parallel};
 use scenes::run::Precision;
 
@@ -107,34 +106,49 @@ fn cost(known: &Known, group: &[&Row]) -> u64 {
     group.iter().map(|row| row.steps).max().unwrap_or(0) * precision * implicit
 }
 
-/// The broken rows, first those that are beyond their bounds by most; then how many rows of each kind hold.
-pub fn report(judged: &[Judged]) -> String {
-    let mut text = String::new();
-    let broken = broken(judged);
-    if !broken.rows.is_empty() {
-        text += &broken.to_text();
-        text.push('\n');
-    }
-    text += &summary(judged).to_text();
+/// Rows of a message, and characters of a line.
+const SHOWN: usize = 10;
+const LINE: usize = 160;
+
+/// The counts; the wrong methods that break the same rows; the rows that are broken by most, with their bounds and their reasons.
+pub fn message(judged: &[Judged]) -> String {
     let of = |verdict| judged.iter().filter(|one| one.verdict() == verdict).count();
-    let counts = [Verdict::Holds, Verdict::Broken, Verdict::NotTested].map(of);
-    // Writing to a String cannot fail.
-    let _ = writeln!(text, "\n{} bounds hold, {} broken, {} not tested", counts[0], counts[1], counts[2]);
+    let [holds, broken, open] = [Verdict::Holds, Verdict::Broken, Verdict::NotTested].map(of);
+    let mut text = format!("{broken} bounds are broken, {holds} hold, {open} are not tested\n");
+    let mut line = |words: String| {
+        text.extend(words.chars().take(LINE));
+        text.push('\n');
+    };
+    for (mutant, named) in looks_like(judged) {
+        line(format!("looks like: {mutant} ({named} of the broken bounds name it)"));
+    }
+    for one in worst(judged).into_iter().take(SHOWN) {
+        let (row, measured, excess) = (&one.row, one.measured.text(), one.excess());
+        line(format!("  {}: {measured}, bound {:.4e} to {:.4e}, {excess}", row.name(), row.low, row.high));
+        line(format!("    change since it was set: {}; reason: {}", one.change(), row.reason));
+    }
+    if broken > SHOWN {
+        line(format!("  and {} more", broken - SHOWN));
+    }
     text
 }
 
-/// The broken rows: measured, bound, by how much, and what changed.
-pub fn broken(judged: &[Judged]) -> Table {
-    let headers = ["broken bound", "measured", "bound", "unit", "by", "change since it was set", "reason"];
-    let mut table = Table::new(&headers, &["measured"]);
-    for one in worst(judged) {
-        let row = &one.row;
-        let bound = format!("{:.6e} … {:.6e}", row.low, row.high);
-        let cells =
-            [row.name(), one.measured.text(), bound, row.unit.clone(), one.excess(), one.change(), row.reason.clone()];
-        table.push(cells);
-    }
-    table
+/// The wrong methods that a third or more of the broken rows name, of those that name one, and at least three; the most first.
+fn looks_like(judged: &[Judged]) -> Vec<(&str, usize)> {
+    let broken = judged.iter().filter(|one| one.is_broken());
+    let named: Vec<&str> = broken.map(|one| one.row.mutant.as_str()).filter(|name| !name.is_empty()).collect();
+    let mut counts: Vec<(&str, usize)> = distinct(named.iter().copied())
+        .into_iter()
+        .map(|name| (name, named.iter().filter(|other| **other == name).count()))
+        .filter(|(_, count)| *count >= 3 && 3 * count >= named.len())
+        .collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    counts
+}
+
+/// The message, then how many rows of each kind hold.
+pub fn report(judged: &[Judged]) -> String {
+    format!("{}\n{}", message(judged), summary(judged).to_text())
 }
 
 /// The broken rows, those first that are beyond their bounds by most.

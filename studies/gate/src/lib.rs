@@ -92,14 +92,15 @@ impl Bounds {
         check::judge(&self.known, rows, progress, |stepper| Box::new(stepper))
     }
 
-    /// Holds a candidate to the f64 rows of the method of that name. On rigid bodies the name says what is stored,
-    /// `semi-implicit-euler/body-omega`.
+    /// Holds a candidate to the f64 rows of the method of that name. On rigid bodies the rows' name says what is stored,
+    /// `semi-implicit-euler/body-omega`; [`InWorld`] and [`InBody`] add it to a plain one.
     ///
     /// # Errors
     /// An unknown name where no row is of that method; a candidate that can run none of the rows, as `Flat` none of a rigid body.
     pub fn hold(&self, method: &str, candidate: &dyn Candidate) -> Result<Held, Error> {
+        let method = &candidate.rows_of(method);
         let rows: Vec<&Row> =
-            self.rows.iter().filter(|row| row.method == method && row.precision == Precision::F64).collect();
+            self.rows.iter().filter(|row| row.method == *method && row.precision == Precision::F64).collect();
         if rows.is_empty() {
             let known = measure::study::distinct(self.rows.iter().map(|row| row.method.clone()));
             return Err(Error::unknown("method with bounds", method, known));
@@ -112,7 +113,7 @@ impl Bounds {
                 Some(_) => "InWorld",
             };
             let message = format!("the candidate can run none of its {} rows; wrap it in {wrapper}(..)", judged.len());
-            return Err(Error::plan(method, message));
+            return Err(Error::plan(method.as_str(), message));
         }
         Ok(Held { method: method.to_owned(), judged })
     }
@@ -123,6 +124,9 @@ struct Borrowed<'a>(&'a dyn Candidate);
 impl Candidate for Borrowed<'_> {
     fn run(&self, ask: &Ask<'_>) -> Option<scenes::run::Trajectory> {
         self.0.run(ask)
+    }
+    fn rows_of(&self, method: &str) -> String {
+        self.0.rows_of(method)
     }
     fn limit(
         &self,
@@ -150,39 +154,7 @@ impl Held {
 
     /// What there is to say in a few lines: the counts, the wrong methods that break the same rows, the rows that are broken by most.
     pub fn summary(&self) -> String {
-        let of = |verdict| self.judged.iter().filter(|one| one.verdict() == verdict).count();
-        let [holds, broken, open] =
-            [reports::Verdict::Holds, reports::Verdict::Broken, reports::Verdict::NotTested].map(of);
-        let mut text = format!("{}: {broken} bounds are broken, {holds} hold, {open} are not tested\n", self.method);
-        if let Some((mutant, named)) = self.looks_like() {
-            text += &format!("looks like: {mutant} ({named} of the broken bounds name it)\n");
-        }
-        for one in check::worst(&self.judged).into_iter().take(SHOWN) {
-            let line = format!(
-                "  {}: {}, bound {:.4e} to {:.4e}, {}",
-                one.row.name(),
-                one.measured.text(),
-                one.row.low,
-                one.row.high,
-                one.excess()
-            );
-            text += &line.chars().take(LINE).collect::<String>();
-            text.push('\n');
-        }
-        if broken > SHOWN {
-            text += &format!("  and {} more\n", broken - SHOWN);
-        }
-        text
-    }
-
-    /// The wrong method that most of the broken rows name, if a third of those that name one do.
-    fn looks_like(&self) -> Option<(&str, usize)> {
-        let broken = self.broken();
-        let named: Vec<&str> =
-            broken.iter().map(|one| one.row.mutant.as_str()).filter(|name| !name.is_empty()).collect();
-        let count = |name: &str| named.iter().filter(|other| **other == name).count();
-        let most = named.iter().copied().max_by_key(|name| count(name))?;
-        (3 * count(most) >= named.len()).then(|| (most, count(most)))
+        format!("{}: {}", self.method, check::message(&self.judged))
     }
 
     /// For a test.
@@ -194,7 +166,3 @@ impl Held {
         assert!(self.broken().is_empty(), "{}", self.summary());
     }
 }
-
-/// Rows of a summary, and characters of a line.
-const SHOWN: usize = 10;
-const LINE: usize = 160;

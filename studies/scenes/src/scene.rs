@@ -77,8 +77,9 @@ pub trait Scene: Parameters + Any + Send + Sync {
         true
     }
 
-    /// Whether a rigid body turns about one principal axis all the time.
-    fn turns_about_one_axis(&self) -> bool {
+    /// Whether a rigid body turns about one principal axis with a constant angular acceleration: the angle is a quadratic polynomial
+    /// of t, for which every method of order 2 has no error but rounding.
+    fn has_constant_angular_acceleration(&self) -> bool {
         false
     }
 

@@ -102,8 +102,7 @@ fn errors(scene: &dyn AnyScene, known: &Known, scheme: Scheme, steps: u64) -> Ve
     let error = |quantity| Some(run.end()?.distances(&known.exact).iter().find(|(q, _)| *q == quantity)?.1);
     let is_wrong = scheme.lacks_gyroscopic_term() && known.without > 0.0;
     let order = if is_wrong { 0.0 } else { f64::from(scheme.order()) };
-    // The angle is a quadratic polynomial of t.
-    let exact = scene.scene().turns_about_one_axis() && scheme.facts().worked_out && scheme.order() > 1;
+    let exact = scene.scene().has_constant_angular_acceleration() && scheme.facts().worked_out && scheme.order() > 1;
     [Quantity::Attitude, Quantity::AngularVelocity]
         .map(|quantity| Row {
             t_s: end_s,

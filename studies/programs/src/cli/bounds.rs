@@ -93,7 +93,7 @@ pub struct Flags {
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Format {
-    /// The broken rows, then how many hold
+    /// The counts, the ten rows that are broken by most, and how many of each kind hold
     Table,
     /// Every row
     Csv,

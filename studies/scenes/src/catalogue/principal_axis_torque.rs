@@ -124,7 +124,7 @@ impl Scene for PrincipalAxisTorque {
         answerable::phase("principal-axis-torque", most, phase, end_s)
     }
 
-    fn turns_about_one_axis(&self) -> bool {
+    fn has_constant_angular_acceleration(&self) -> bool {
         true
     }
 
