@@ -210,3 +210,19 @@ fn a_circle_through_three_files_is_found() {
     assert_eq!(names, ["a/one", "b/two", "c"]);
     assert_eq!(circles(&between_rooms(&between_files(&known))).len(), 1);
 }
+
+// Fails if: an engine's tests, which depend on `gate`, compile a chart library or a command line.
+#[test]
+fn the_gate_pulls_in_no_charts_and_no_command_line() {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--package", "gate", "--edges", "normal", "--prefix", "none", "--offline", "--locked"])
+        .current_dir(root())
+        .output()
+        .expect("cargo runs");
+    let tree = String::from_utf8_lossy(&output.stdout).into_owned();
+    let packages: Vec<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
+    assert!(output.status.success() && packages.contains(&"measure"), "{}", String::from_utf8_lossy(&output.stderr));
+    for package in ["plotters", "plotters-backend", "maud", "ttf-parser", "math-core", "resvg", "clap"] {
+        assert!(!packages.contains(&package), "gate depends on {package}");
+    }
+}
