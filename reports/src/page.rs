@@ -2,6 +2,7 @@
 
 mod block;
 mod opening;
+mod table;
 
 pub use block::Block;
 

@@ -1,7 +1,6 @@
 //! Rows as CSV, and small tables as text, Markdown and HTML.
 
 use crate::Error;
-use maud::{Markup, html};
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Rows as CSV with a header. A field is written so that reading it gives the same value back, bit for bit for a
@@ -120,11 +119,11 @@ impl Table {
     }
 
     /// Number of columns: that of the longest line.
-    fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.rows.iter().map(Vec::len).fold(self.headers.len(), usize::max)
     }
 
-    fn align(&self, column: usize) -> Align {
+    pub(crate) fn align(&self, column: usize) -> Align {
         self.align.get(column).copied().unwrap_or_default()
     }
 
@@ -154,29 +153,9 @@ impl Table {
             + "|\n"
             + &self.rows.iter().map(set).collect::<String>()
     }
-
-    /// An HTML table with a caption; a page's script makes its columns sortable.
-    pub fn to_html(&self, caption: &str) -> String {
-        self.markup(caption).into_string()
-    }
-
-    pub(crate) fn markup(&self, caption: &str) -> Markup {
-        // A class for the table instead of one for every cell: `r3` sets the third column to the right.
-        let numbers = (0..self.columns()).filter(|&c| self.align(c) == Align::Right);
-        let class = numbers.fold("sortable".to_owned(), |class, c| format!("{class} r{}", c + 1));
-        html! {
-            table class=(class) {
-                @if !caption.is_empty() { caption { (caption) } }
-                thead { tr { @for c in 0..self.columns() { th scope="col" { (cell(&self.headers, c)) } } } }
-                tbody {
-                    @for row in &self.rows { tr { @for c in 0..self.columns() { td { (cell(row, c)) } } } }
-                }
-            }
-        }
-    }
 }
 
-fn cell(line: &[String], column: usize) -> &str {
+pub(crate) fn cell(line: &[String], column: usize) -> &str {
     line.get(column).map_or("", String::as_str)
 }
 
@@ -277,15 +256,5 @@ mod tests {
             markdown.starts_with("| method | order |\n|---|---:|\n| Störmer–Verlet, θ̇ | 2 |\n| a\\|b <i> | −10⁻³ |\n")
         );
         assert!(markdown.ends_with("| short |  |\n"), "{markdown}");
-    }
-
-    #[test]
-    fn html_escapes_markup_and_marks_numbers() {
-        let html = table().to_html("Orders & more");
-        assert!(
-            html.contains("<caption>Orders &amp; more</caption>") && html.contains("<td>a|b &lt;i&gt;</td>"),
-            "{html}"
-        );
-        assert!(html.starts_with("<table class=\"sortable r2\">") && !html.contains("<i>"), "{html}");
     }
 }
