@@ -39,6 +39,10 @@ fn has_formula(scene: &str, method: &str) -> bool {
     stepper.of_theory().is_some_and(|method| scene.scene().stability_limit(method).is_some())
 }
 
+/// For whoever has added a method or a scene.
+const REMEDY: &str = "no bound is committed; run `cargo run --release --bin bounds -- --update --reason \"why\"` \
+    (reports/guides/adding.md says what else may turn red)";
+
 // Fails if: a scene or a method is registered and has no bound.
 #[test]
 fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
@@ -49,10 +53,12 @@ fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
             rows.iter().any(|r| r.scene == scene && r.method == method && r.quantity == subject && r.kind == kind)
         };
         match subject {
-            Subject::Error(_) => assert!(has(Kind::ErrorAtStep), "{scene} {method} {}", subject.id()),
-            Subject::Evaluations => assert!(has(Kind::EvaluationsPerStep), "{scene} {method}"),
+            Subject::Error(_) => assert!(has(Kind::ErrorAtStep), "{scene} {method} {}: {REMEDY}", subject.id()),
+            Subject::Evaluations => assert!(has(Kind::EvaluationsPerStep), "{scene} {method}: {REMEDY}"),
             // A limit of which no formula is known is not bounded; the audit lists it.
-            Subject::Step => assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}"),
+            Subject::Step => {
+                assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}: {REMEDY}")
+            }
             Subject::Invariant(_) => {}
         }
     }

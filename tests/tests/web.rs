@@ -80,7 +80,10 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 
 fn agrees(questions: &[String]) {
     questions.par_iter().with_max_len(1).for_each_init(Page::open, |page, question| {
-        let (module, native) = (page.ask(question).expect("an answer"), natively(question).expect("an answer"));
+        let module = page.ask(question).unwrap_or_else(|error| {
+            panic!("{error}; a module that does not know a new method or scene is built by `bash studies/web/build.sh`")
+        });
+        let native = natively(question).expect("an answer");
         assert!(!native.0.is_empty() || !native.1.is_empty(), "an empty answer shows nothing: {question}");
         assert_eq!(module.1, native.1, "{question}");
         assert!(bits(&module.0) == bits(&native.0), "other bits: {question}");

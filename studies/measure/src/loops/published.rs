@@ -42,7 +42,7 @@ pub struct Published {
     pub step_s: f64,
     /// Length of the run, s.
     pub for_s: f64,
-    /// What was printed: see [`Quantity`].
+    /// What was printed: see `Quantity` in this file.
     pub quantity: String,
     /// The number.
     pub value: f64,
