@@ -57,7 +57,7 @@ fn every_scene_and_method_has_an_error_and_its_evaluations_bounded() {
             Subject::Evaluations => assert!(has(Kind::EvaluationsPerStep), "{scene} {method}: {REMEDY}"),
             // A limit of which no formula is known is not bounded; the audit lists it.
             Subject::Step => {
-                assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}: {REMEDY}")
+                assert!(has(Kind::StabilityLimit) || !has_formula(scene, &method), "{scene} {method}: {REMEDY}");
             }
             Subject::Invariant(_) => {}
         }
