@@ -21,6 +21,7 @@ fn rows() -> &'static [Row] {
             quick: false,
             draws: Default::default(),
             looped: None,
+            shard: None,
             progress: Progress::silent(),
         })
     })

@@ -23,6 +23,7 @@ fn selection(id: &str) -> Selection {
         quick: false,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -26,6 +26,7 @@ fn rows<S: Study>(scene: &str) -> String {
         draws: Default::default(),
         quick: true,
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     };
     reports::write_csv(&S::measure(&selection)).expect("rows have a form")

@@ -21,6 +21,7 @@ fn everything(precisions: &[Precision]) -> Selection {
         quick: false,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -180,6 +180,7 @@ fn selection(id: &str, methods: &[MethodId], steps: &[u64]) -> Selection {
         quick: true,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -154,6 +154,7 @@ fn selection(scene: Box<dyn AnyScene>, method: MethodId, precision: Precision) -
         quick: false,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -172,6 +172,7 @@ fn everything() -> Selection {
         draws: Default::default(),
         quick: false,
         looped: None,
+        shard: None,
         progress: measure::sweep::Progress::silent(),
     }
 }

@@ -145,6 +145,7 @@ fn selection(scene: Box<dyn AnyScene>, precision: Precision) -> Selection {
         quick: true,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -28,6 +28,7 @@ fn selection(id: &str, set: &[(&str, &str)], methods: &[MethodId]) -> Selection 
         quick: false,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -66,8 +66,14 @@ fn claims_and_manifest_are_what_their_schemas_say() {
         let own = if binary == "report" { [&small[..], &["--json"]].concat() } else { arguments.to_vec() };
         claims.push(json(binary, &own, directory.path()));
     }
+    let loops = ["--quick", "--scene", "pendulum", "--method", "rk4", "--loop", "substeps=2"];
+    let output = program("loops").args(loops).current_dir(directory.path()).output().expect("the binary was built");
+    assert!(output.status.success());
+    let part = ["--quick", "--scene", "oscillator", "--method", "rk4", "--shard", "1/2"];
+    let output = program("drift").args(part).current_dir(directory.path()).output().expect("the binary was built");
+    assert!(output.status.success());
     let manifest = |name: &str| fs::read_to_string(directory.path().join("target").join(name).join("manifest.json"));
-    let manifests: Vec<Value> = ["convergence", "ensemble", "report"]
+    let manifests: Vec<Value> = ["convergence", "ensemble", "report", "loops", "drift"]
         .map(|name| serde_json::from_str(&manifest(name).expect("written")).expect("JSON"))
         .into();
     assert_fits("claims", &claims);

@@ -208,6 +208,7 @@ fn every_claim_of_a_quick_study_holds() {
         quick: true,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     };
     let rows = Stability::measure(&selection);

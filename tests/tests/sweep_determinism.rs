@@ -22,6 +22,7 @@ fn selection() -> Selection {
         quick: true,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

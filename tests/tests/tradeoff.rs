@@ -32,6 +32,7 @@ fn selection(ids: &[&str]) -> Selection {
         quick: false,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

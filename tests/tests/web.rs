@@ -196,6 +196,7 @@ fn selection() -> Selection {
         quick: true,
         draws: Default::default(),
         looped: None,
+        shard: None,
         progress: Progress::silent(),
     }
 }

@@ -19,6 +19,7 @@ pub mod operations;
 pub mod order;
 pub mod random;
 pub mod rotation;
+pub mod shard;
 pub mod stability;
 pub mod study;
 pub mod sweep;

@@ -1,12 +1,15 @@
 //! What every study has: a plan, rows, figures and claims.
 
+use std::sync::Arc;
+
 use reports::{Claim, Figure, Table};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
 use crate::game_loop::Loop;
-use crate::sweep::Progress;
+use crate::shard::Shard;
+use crate::sweep::{Progress, in_parallel};
 use integrator::methods::MethodId;
 use scenes::any::AnyScene;
 use scenes::run::Precision;
@@ -32,6 +35,8 @@ pub struct Selection {
     pub quick: bool,
     /// How the step is used, where it was said.
     pub looped: Option<Loop>,
+    /// The part of the work to be done; all of it without one.
+    pub shard: Option<Arc<Shard>>,
     /// The bar to be shown.
     pub progress: Progress,
 }
@@ -87,6 +92,55 @@ impl Default for Draws {
 const MOST_STEPS: u64 = 1 << 22;
 
 impl Selection {
+    /// Does the jobs of one list of a study on all cores and gives their rows in the order of the jobs: of a shard those of its own
+    /// part. A unit of `cost` takes about `unit_s` seconds.
+    pub(crate) fn rows<J: Sync, R: Send>(
+        &self,
+        jobs: &[J],
+        unit_s: f64,
+        cost: impl Fn(&J) -> u64,
+        work: impl Fn(&J) -> Vec<R> + Sync,
+    ) -> Vec<R> {
+        self.rows_by(jobs, |i, _| i, unit_s, cost, work)
+    }
+
+    /// The same with jobs that only one shard may take together: neighbours with the same `group`, which counts from 0.
+    pub(crate) fn rows_by<J: Sync, R: Send>(
+        &self,
+        jobs: &[J],
+        group: impl Fn(usize, &J) -> usize,
+        unit_s: f64,
+        cost: impl Fn(&J) -> u64,
+        work: impl Fn(&J) -> Vec<R> + Sync,
+    ) -> Vec<R> {
+        let groups: Vec<usize> = jobs.iter().enumerate().map(|(i, job)| group(i, job)).collect();
+        let mut seconds = vec![0.0; groups.iter().max().map_or(0, |last| last + 1)];
+        for (job, group) in jobs.iter().zip(&groups) {
+            seconds[*group] += unit_s * cost(job) as f64;
+        }
+        let mine = self.takes(&seconds);
+        let own: Vec<(usize, &J)> = groups.iter().copied().zip(jobs).filter(|(group, _)| mine[*group]).collect();
+        let done = in_parallel(&own, |(_, job)| cost(job), &self.progress, |(_, job)| work(job));
+        let mut counts: Vec<Option<usize>> = mine.iter().map(|mine| mine.then_some(0)).collect();
+        for ((group, _), rows) in own.iter().zip(&done) {
+            counts[*group] = counts[*group].map(|count| count + rows.len());
+        }
+        self.took(&counts);
+        done.into_iter().flatten().collect()
+    }
+
+    /// Whether each group of work, which takes about so many seconds, is to be done. [`Self::took`] has to follow.
+    pub(crate) fn takes(&self, seconds: &[f64]) -> Vec<bool> {
+        self.shard.as_ref().map_or_else(|| vec![true; seconds.len()], |shard| shard.mine(seconds))
+    }
+
+    /// How many rows each group that was taken gave.
+    pub(crate) fn took(&self, rows: &[Option<usize>]) {
+        if let Some(shard) = &self.shard {
+            shard.keep(rows);
+        }
+    }
+
     /// The end of an error run of a scene, s.
     pub fn end_s(&self, scene: &dyn AnyScene) -> f64 {
         self.given_end_s(scene).unwrap_or(scene.scene().info().horizon_s)

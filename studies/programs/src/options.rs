@@ -11,7 +11,7 @@ use measure::study::Selection;
 use measure::sweep::Progress;
 
 /// What to run, where to write it, and what to print.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Common {
     /// What to run.
     #[command(flatten)]
@@ -25,6 +25,19 @@ pub struct Common {
     #[arg(long, value_name = "DIR", help_heading = "What to run",
         conflicts_with_all = ["scene", "method", "precision", "set", "steps", "length", "looped", "quick", "plan_file"])]
     pub from: Option<PathBuf>,
+
+    /// Do the part K of N of the work and write its rows; `merge` puts the parts together
+    #[arg(long, value_name = "K/N", help_heading = "What to run", value_parser = shard,
+        conflicts_with_all = ["from", "figures_only", "markdown", "json"])]
+    pub shard: Option<(usize, usize)>,
+
+    /// Do nothing where the directory already holds this run whole
+    #[arg(long, help_heading = "What to run", conflicts_with_all = ["from", "figures_only"])]
+    pub resume: bool,
+
+    /// Run nothing: tell how much work it is, how long it takes here, and a number of shards
+    #[arg(long, help_heading = "What to run", conflicts_with_all = ["from", "shard", "resume", "figures_only", "markdown", "json"])]
+    pub dry_run: bool,
 
     /// Directory for the results [default: target/report for the report, target/NAME for the study NAME]
     #[arg(long, value_name = "DIR", help_heading = "What to write")]
@@ -76,6 +89,16 @@ impl Format {
     pub(crate) fn ending(self) -> &'static str {
         if self == Format::Png { "png" } else { "svg" }
     }
+}
+
+/// More parts than any plan has work for.
+const MOST_SHARDS: usize = 65_536;
+
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let remedy = format!("give K/N with 1 <= K <= N <= {MOST_SHARDS}, such as 1/8");
+    let numbers = text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
+    let allowed = |(k, n): &(usize, usize)| (1..=*n).contains(k) && *n <= MOST_SHARDS;
+    numbers.filter(allowed).ok_or_else(|| format!("not a part of the work; {remedy}"))
 }
 
 /// More threads than any machine has cores.
@@ -134,6 +157,9 @@ impl Common {
             ("--format", self.format != Format::default(), files),
             ("--steps", !self.plan.steps.is_empty(), runs),
             ("--from", self.from.is_some(), runs),
+            ("--shard", self.shard.is_some(), runs),
+            ("--resume", self.resume, files),
+            ("--dry-run", self.dry_run, runs),
         ];
         let unheard = given.into_iter().find(|(_, is_given, _)| *is_given);
         unheard.map_or(Ok(()), |(flag, _, why)| Err(Error::plan(flag, format!("{why}; leave it out"))))

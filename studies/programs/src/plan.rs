@@ -284,6 +284,7 @@ impl Plan {
                 seed: self.seed.unwrap_or(Draws::default().seed),
             },
             looped: (!self.looped.is_empty()).then(|| Loop::read(&self.looped)).transpose()?,
+            shard: None,
             progress: Progress::silent(),
         })
     }

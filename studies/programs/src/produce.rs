@@ -7,9 +7,12 @@ use reports::{Block, Claim, Figure, OutputDir, Section};
 
 use crate::options::{Common, Format};
 use crate::page;
+use crate::parts;
+use crate::parts::Each;
 use crate::plan::Plan;
 use crate::provenance;
 use crate::provenance::Manifest;
+use crate::shards::Shards;
 use crate::teach;
 use measure::adequacy::Adequacy;
 use measure::convergence::Convergence;
@@ -32,8 +35,8 @@ pub struct Product {
     pub claims: Vec<Claim>,
 }
 
-/// The directory of the whole report, below `target/`.
-pub const REPORT: &str = "report";
+pub use crate::parts::REPORT;
+pub(crate) use crate::parts::refuse_schemes;
 
 /// Claims, and where the rows come from that they were judged by.
 pub struct Judged {
@@ -67,6 +70,7 @@ pub struct Source {
 enum Rows {
     Measured(Box<Selection>),
     Files(PathBuf),
+    Shards(Shards),
 }
 
 impl Source {
@@ -75,16 +79,13 @@ impl Source {
     /// # Errors
     /// Bad input, named with its place and its remedy.
     pub fn of(common: &Common) -> Result<Self, Error> {
-        if common.format != Format::Svg && !reports::DRAWS_PNG {
-            let message = "this program draws no PNG; build it with `cargo build --release --features png`";
-            return Err(Error::plan("--format", message));
-        }
+        let format = drawable(common.format)?;
         let selection = common.selection()?;
         let (rows, manifest) = match &common.from {
             Some(directory) => (Rows::Files(directory.clone()), Manifest::read(directory)?),
             None => (Rows::Measured(Box::new(selection)), Manifest::of(&common.plan)),
         };
-        Ok(Source { rows, format: common.format, manifest })
+        Ok(Source { rows, format, manifest })
     }
 
     fn rows<S: Study>(&mut self) -> Result<Vec<S::Row>, Error> {
@@ -95,6 +96,7 @@ impl Source {
                 Ok(files::in_order::<S>(S::measure(selection)))
             }
             Rows::Files(directory) => self.manifest.rows_of::<S>(directory),
+            Rows::Shards(shards) => Ok(files::in_order::<S>(shards.rows_of::<S>()?)),
         }
     }
 
@@ -134,17 +136,13 @@ impl Source {
     }
 }
 
-/// Refuses a scheme for rigid bodies where the study has no use for one.
-///
-/// # Errors
-/// The scheme, with the studies that take it.
-pub(crate) fn refuse_schemes<S: Study>(selection: &Selection) -> Result<(), Error> {
-    let refused = selection.schemes.first().filter(|_| !S::TAKES_SCHEMES);
-    refused.map_or(Ok(()), |scheme| {
-        let (id, study) = (scheme.id(), S::ID);
-        let message = format!("{id} moves rigid bodies only; `rotation` and `tradeoff` take it, `{study}` does not");
-        Err(Error::plan("--method", message))
-    })
+/// The form of the charts, if this program draws it.
+fn drawable(format: Format) -> Result<Format, Error> {
+    if format != Format::Svg && !reports::DRAWS_PNG {
+        let message = "this program draws no PNG; build it with `cargo build --release --features png`";
+        return Err(Error::plan("--format", message));
+    }
+    Ok(format)
 }
 
 /// The command that makes a figure again: the study, the figure's scene and the plan's flags.
@@ -219,11 +217,11 @@ fn drawn(figures: Vec<Figure>, format: Format) -> Result<Vec<Drawn>, Error> {
 /// # Errors
 /// Bad input, or an output that cannot be written.
 pub fn study<S: Study>(common: &Common) -> Result<(Judged, Section), Error> {
-    common.plan.heeded(S::ID, S::HEEDS)?;
-    let mut source = Source::of(common)?;
-    if let Rows::Measured(selection) = &source.rows {
-        refuse_schemes::<S>(selection)?;
-    }
+    parts::heeds::<S>(common)?;
+    study_from::<S>(common, Source::of(common)?)
+}
+
+fn study_from<S: Study>(common: &Common, mut source: Source) -> Result<(Judged, Section), Error> {
     let out = OutputDir::create(common.out(S::ID))?;
     let Product { files, claims, section } = source.product::<S>()?;
     let manifest = source.manifest.sealed(&files)?;
@@ -254,7 +252,41 @@ pub(crate) fn write(
 /// # Errors
 /// Bad input, or an output that cannot be written.
 pub fn report(common: &Common) -> Result<Judged, Error> {
-    let mut source = Source::of(common)?;
+    report_from(common, Source::of(common)?)
+}
+
+/// Puts the shards of a program together and writes its files.
+///
+/// # Errors
+/// Rows of a shard that cannot be read, or an output that cannot be written.
+pub(crate) fn merged(common: &Common, shards: Shards) -> Result<Judged, Error> {
+    let (program, manifest) = (shards.program().to_owned(), shards.manifest());
+    let source = Source { rows: Rows::Shards(shards), format: drawable(common.format)?, manifest };
+    if program == REPORT {
+        return report_from(common, source);
+    }
+    let mut one = One { common, source: Some(source), judged: None };
+    parts::each(&program, &mut one)?;
+    one.judged.ok_or_else(|| Error::plan("merge", format!("'{program}' runs no study")))
+}
+
+/// The one study of a program.
+struct One<'a> {
+    common: &'a Common,
+    source: Option<Source>,
+    judged: Option<Judged>,
+}
+
+impl Each for One<'_> {
+    fn on<S: Study>(&mut self) -> Result<(), Error> {
+        if let Some(source) = self.source.take() {
+            self.judged = Some(study_from::<S>(self.common, source)?.0);
+        }
+        Ok(())
+    }
+}
+
+fn report_from(common: &Common, mut source: Source) -> Result<Judged, Error> {
     let out = OutputDir::create(common.out(REPORT))?;
     let products = source.all()?;
     let (mut files, mut sections, mut claims) = (Vec::new(), Vec::new(), Vec::new());

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use crate::plan::Plan;
 use measure::error::Error;
 use measure::files::{self, RowFile};
+use measure::shard::Part;
 use measure::study::Study;
 
 /// What measured the rows of a report, and by which plan. A page needs nothing but this and the rows.
@@ -31,6 +32,9 @@ pub struct Manifest {
     /// SHA-256 of the plan as TOML, in hexadecimal digits.
     #[serde(default)]
     pub plan_sha256: String,
+    /// The part of the work that was done, where it was a part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<ShardSeal>,
     /// The files of rows, by name.
     #[serde(default)]
     pub rows: BTreeMap<String, Seal>,
@@ -43,6 +47,19 @@ pub struct Seal {
     pub rows: usize,
     /// SHA-256 of its bytes, in hexadecimal digits.
     pub sha256: String,
+}
+
+/// What a part of the work is known by.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShardSeal {
+    /// The program that ran it: `report`, or the name of a study.
+    pub program: String,
+    /// Which part, from 1 to `count`.
+    pub index: usize,
+    /// How many parts there are.
+    pub count: usize,
+    /// What each study did.
+    pub studies: BTreeMap<String, Part>,
 }
 
 /// The version of the columns that this program writes, and the only one that it reads.
@@ -81,6 +98,7 @@ impl Manifest {
             processor: processor(),
             plan: plan.clone(),
             plan_sha256: String::new(),
+            shard: None,
             rows: BTreeMap::new(),
         }
     }
@@ -212,6 +230,24 @@ impl Manifest {
         .filter(|(_, value)| !value.is_empty())
         .collect()
     }
+}
+
+/// Whether a file is the one that its seal describes.
+///
+/// # Errors
+/// A file that cannot be read or is another, with what is wrong.
+pub(crate) fn unbroken(path: &Path, seal: &Seal) -> Result<String, Error> {
+    let text = read(path)?;
+    let (found, rows) = (sha256(text.as_bytes()), text.matches('\n').count().saturating_sub(1));
+    if found == seal.sha256 {
+        return Ok(text);
+    }
+    let message = if rows == seal.rows {
+        format!("not the file that {MANIFEST} describes: SHA-256 {found}, not {}", seal.sha256)
+    } else {
+        format!("{rows} rows where {MANIFEST} counts {}", seal.rows)
+    };
+    Err(Error::plan(path.display().to_string(), format!("{message}; run this shard again")))
 }
 
 /// The text of a file of an earlier run.

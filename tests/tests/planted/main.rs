@@ -144,6 +144,7 @@ impl Baseline {
             quick: true,
             draws: Default::default(),
             looped: None,
+            shard: None,
             progress: Progress::silent(),
         };
         let rows = Convergence::measure(&selection);

@@ -14,7 +14,6 @@ use crate::claim::{Evidence, largest};
 use crate::error::Error;
 use crate::order::local_order;
 use crate::study::{Derived, Selection, Study, check_method, check_steps, distinct, short};
-use crate::sweep::in_parallel;
 use hierarchies::{Level, METHODS, ModelHierarchy};
 use scenes::run::Outcome;
 
@@ -73,7 +72,7 @@ impl Study for Adequacy {
         };
         let hierarchies: Vec<ModelHierarchy> = hierarchies::all(&selection.scenes).into_iter().filter(chosen).collect();
         let halvings = if selection.quick { HALVINGS - 2 } else { HALVINGS };
-        in_parallel(&hierarchies, |_| 1, &selection.progress, |ladder| climb(ladder, selection, halvings)).concat()
+        selection.rows(&hierarchies, 4e-3, |_| 1, |ladder| climb(ladder, selection, halvings))
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         show::tables(rows)

@@ -149,8 +149,7 @@ fn measure(selection: &Selection) -> Vec<Row> {
         }
     }
     let cost = |job: &Job<'_>| job.steps * if job.method.is_implicit() { 20 } else { u64::from(job.method.order()) };
-    let rows = in_parallel(&jobs, cost, &selection.progress, |job| job.rows(&selection.precisions));
-    rows.into_iter().flatten().collect()
+    selection.rows(&jobs, 2.4e-7, cost, |job| job.rows(&selection.precisions))
 }
 
 /// What is known of a scene before it is run.

@@ -165,9 +165,7 @@ impl Study for DriftStudy {
         let cost = |job: &(&Track<'_>, MethodId, Precision)| {
             if job.1.is_implicit() { 20 } else { u64::from(job.1.order()) }
         };
-        let rows =
-            in_parallel(&jobs, cost, &selection.progress, |&(track, method, precision)| track.rows(method, precision));
-        rows.into_iter().flatten().collect()
+        selection.rows(&jobs, 1.2e-3, cost, |&(track, method, precision)| track.rows(method, precision))
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         Ok(vec![laws::table(rows)?])

@@ -180,20 +180,26 @@ pub fn measure(selection: &Selection, count: usize, seed: u64) -> Vec<Row> {
         }
     }
     let chunks: Vec<Range<usize>> = (0..count).step_by(CHUNK).map(|i| i..count.min(i + CHUNK)).collect();
-    let jobs: Vec<Job<'_>> = sweeps
+    let cost = |steps: u64, method: MethodId| steps * u64::from(method.order());
+    // A step of a member takes about 20 ns.
+    let seconds: Vec<f64> = sweeps.iter().map(|&(_, m, n)| 2e-8 * (cost(n, m) * count as u64) as f64).collect();
+    let mine = selection.takes(&seconds);
+    let own: Vec<_> = sweeps.iter().zip(&mine).filter(|(_, mine)| **mine).map(|(sweep, _)| *sweep).collect();
+    let jobs: Vec<Job<'_>> = own
         .iter()
         .flat_map(|&(drawing, method, steps)| {
             chunks.iter().map(move |members| Job { drawing, method, steps, members: members.clone() })
         })
         .collect();
-    let cost = |job: &Job<'_>| job.steps * u64::from(job.method.order());
-    let done = in_parallel(&jobs, cost, &selection.progress, Job::errors);
+    let done = in_parallel(&jobs, |job| cost(job.steps, job.method), &selection.progress, Job::errors);
     let errors = done.chunks(chunks.len()).map(<[_]>::concat);
-    sweeps
-        .iter()
-        .zip(errors)
-        .flat_map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e))
-        .collect()
+    let rows: Vec<Vec<Row>> =
+        own.iter().zip(errors).map(|(&(drawing, method, steps), e)| rows(drawing, method, steps, seed, &e)).collect();
+    let mut each = rows.iter();
+    let counts: Vec<Option<usize>> =
+        mine.iter().map(|mine| if *mine { each.next().map(Vec::len) } else { None }).collect();
+    selection.took(&counts);
+    rows.concat()
 }
 
 fn steps(selection: &Selection, scene: &dyn AnyScene) -> Vec<u64> {

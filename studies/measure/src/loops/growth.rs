@@ -6,7 +6,7 @@ use scenes::stepping::Stepping;
 
 use super::row::{Experiment, Row};
 use crate::stability::frames::jitter_over;
-use crate::sweep::{Progress, in_parallel};
+use crate::study::Selection;
 
 /// The parts by which a step varies in the chart; the first is small enough for the theory.
 pub const PARTS: [f64; 3] = [0.1, 0.3, 0.6];
@@ -22,7 +22,7 @@ pub fn small(z: f64, part: f64) -> f64 {
 }
 
 /// Measured rates over h omega, for each part.
-pub(super) fn rows(quick: bool, progress: &Progress) -> Vec<Row> {
+pub(super) fn rows(selection: &Selection) -> Vec<Row> {
     let Ok(mut scene) = scenes::by_id("oscillator") else { return Vec::new() };
     for name in ["mass", "stiffness"] {
         if scene.scene_mut().set("oscillator", name, "1").is_err() {
@@ -31,21 +31,21 @@ pub(super) fn rows(quick: bool, progress: &Progress) -> Vec<Row> {
     }
     let method = MethodId::SemiImplicitEuler;
     let stepping = Stepping { scene: scene.as_ref(), method, precision: Precision::F64 };
-    let (points, blocks) = if quick { (4, 4) } else { (12, 8) };
+    let (points, blocks) = if selection.quick { (4, 4) } else { (12, 8) };
     let jobs: Vec<(f64, f64)> = PARTS
         .iter()
         .flat_map(|&part| (1..=points).map(move |i| (part, 1.8 * f64::from(i) / f64::from(points))))
         .collect();
-    in_parallel(
+    selection.rows(
         &jobs,
+        5e-2,
         |_| 1,
-        progress,
         |&(part, z)| {
             let found = jitter_over(&stepping, z, part, 1, blocks);
             let (theory, is_small) = (small(z, part), part == PARTS[0]);
             // The next term is a part (part / (1 - z^2 / 4))^2 or so of the rate, four times that is allowed; and twice the 95 % interval.
             let next = 4.0 * (part / (1.0 - 0.25 * z * z)).powi(2) * theory;
-            Row {
+            vec![Row {
                 experiment: Experiment::Jitter,
                 choice: "jitter".to_owned(),
                 settings: format!("jitter={part}"),
@@ -60,7 +60,7 @@ pub(super) fn rows(quick: bool, progress: &Progress) -> Vec<Row> {
                 tolerance: found.filter(|_| is_small).map(|f| 2.0 * f.half_width + next),
                 theory_order: None,
                 outcome: if found.is_some() { Outcome::Finished } else { Outcome::Diverged },
-            }
+            }]
         },
     )
 }

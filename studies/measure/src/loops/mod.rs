@@ -21,7 +21,6 @@ pub use row::{Experiment, Row};
 use crate::error::Error;
 use crate::game_loop::Loop;
 use crate::study::{Derived, Selection, Study, check_method, check_steps};
-use crate::sweep::in_parallel;
 use integrator::methods::MethodId;
 use orders::{CHOICES, Choice, METHODS, SCENES, Sweep};
 use scenes::any::AnyScene;
@@ -61,18 +60,13 @@ impl Study for Loops {
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let sweeps = Sweeps::of(selection);
-        let mut rows = in_parallel(
-            &sweeps.jobs(selection),
-            |(_, frames)| *frames,
-            &selection.progress,
-            |(sweep, frames)| sweep.rows(&[*frames]),
-        )
-        .concat();
+        let jobs = sweeps.jobs(selection);
+        let mut rows = selection.rows(&jobs, 2.2e-7, |(_, frames)| *frames, |(sweep, frames)| sweep.rows(&[*frames]));
         if selection.looped.is_none() {
-            rows.extend(laws());
-            rows.extend(growth::rows(selection.quick, &selection.progress));
+            rows.extend(selection.rows(&[()], 6e-3, |()| 1, |()| laws()));
+            rows.extend(growth::rows(selection));
             // The table is part of the program and is read by its tests: a line that cannot be read leaves the claim untested.
-            rows.extend(published::built_in().unwrap_or_default());
+            rows.extend(selection.rows(&[()], 9e-3, |()| 1, |()| published::built_in().unwrap_or_default()));
         }
         rows
     }

@@ -19,7 +19,6 @@ pub use scenes::scheme::{Rule, Scheme};
 
 use crate::error::Error;
 use crate::study::{Derived, Selection, Study, check_method, check_steps};
-use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::run::{Outcome, Trajectory};
 
@@ -48,11 +47,8 @@ impl Study for Rotation {
         rows.extend(on_free_bodies(selection, &schemes));
         let scenes: Vec<&dyn AnyScene> =
             selection.scenes.iter().map(AsRef::as_ref).filter(|scene| scene.is_rigid()).collect();
-        let same =
-            || in_parallel(&scenes, |_| 1, &selection.progress, |scene| same_motions(*scene, selection.end_s(*scene)));
-        let (same, printed) = rayon::join(same, printed);
-        rows.extend(same.into_iter().flatten());
-        rows.extend(printed);
+        rows.extend(selection.rows(&scenes, 7e-3, |_| 1, |scene| same_motions(*scene, selection.end_s(*scene))));
+        rows.extend(selection.rows(&[()], 0.04, |()| 1, |()| printed()));
         rows
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
@@ -87,7 +83,7 @@ fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
     let body = laws::generic_body();
     let jobs: Vec<Scheme> = schemes.to_vec();
     let cost = |scheme: &Scheme| if scheme.is_implicit() { 50 } else { 1 };
-    in_parallel(&jobs, cost, &selection.progress, |&scheme| {
+    selection.rows(&jobs, 2.3e-3, cost, |&scheme| {
         let one = [scheme];
         let mut rows = laws::step_laws(&body, &one);
         for (name, inertia, omega3) in laws::TOPS {
@@ -103,7 +99,6 @@ fn on_free_bodies(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
         rows.extend(long::drift(&body, &one));
         rows
     })
-    .concat()
 }
 
 /// The two forms of semi-implicit Euler, which are one motion, and of explicit Euler, which are not.

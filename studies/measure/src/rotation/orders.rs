@@ -9,7 +9,6 @@ use super::row::{Experiment, Row};
 use crate::convergence::{Approach, RESOLVED, limit};
 use crate::order::{Sample, local_order};
 use crate::study::{Selection, distinct};
-use crate::sweep::in_parallel;
 use scenes::any::AnyScene;
 use scenes::erased::{AnyMotion, BodyMotion, ErasedPlace};
 use scenes::errors::ExactSamples;
@@ -29,10 +28,9 @@ pub fn measure(selection: &Selection, schemes: &[Scheme]) -> Vec<Row> {
     let of_scene = |(&scene, known)| schemes.iter().map(move |&scheme| (known, scene, scheme));
     let jobs: Vec<(&Known, &dyn AnyScene, Scheme)> = scenes.iter().zip(&known).flat_map(of_scene).collect();
     let cost = |(_, _, scheme): &(&Known, &dyn AnyScene, Scheme)| if scheme.is_implicit() { 50 } else { 1 };
-    in_parallel(&jobs, cost, &selection.progress, |&(known, scene, scheme)| {
+    selection.rows(&jobs, 7.6e-5, cost, |&(known, scene, scheme)| {
         sweep(scene, known, scheme, &selection.sweep(scene, 1..=HALVINGS))
     })
-    .concat()
 }
 
 /// What is known of a scene before it is run.

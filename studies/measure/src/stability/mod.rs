@@ -24,7 +24,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::study::{Derived, Kind, Selection, Study};
-use crate::sweep::in_parallel;
 use failure::Failure;
 use maps::{Grid, MapRow};
 use models::Scheme;
@@ -208,7 +207,7 @@ impl Study for Stability {
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let jobs = jobs(selection);
-        in_parallel(&jobs, Job::cost, &selection.progress, Job::rows).into_iter().flatten().collect()
+        selection.rows(&jobs, 2.8e-3, Job::cost, Job::rows)
     }
     fn tables(rows: &[Row]) -> Result<Vec<Derived>, Error> {
         tables::all(rows)

@@ -163,7 +163,7 @@ impl Study for Tradeoff {
 
     fn measure(selection: &Selection) -> Vec<Row> {
         let mut rows = runs::errors(selection);
-        rows.extend(stagnation::rows(selection));
+        rows.extend(selection.rows(&[()], 0.01, |()| 1, |()| stagnation::rows(selection)));
         runs::time(selection, &mut rows);
         rows
     }

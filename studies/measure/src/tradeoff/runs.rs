@@ -36,6 +36,8 @@ struct Job<'a> {
     truth: &'a ExactSamples<'a>,
     scene: &'a dyn AnyScene,
     candidate: Candidate,
+    /// Its number among the candidates of all scenes.
+    group: usize,
     precisions: Vec<Precision>,
     span: Span,
 }
@@ -46,24 +48,26 @@ pub fn errors(selection: &Selection) -> Vec<Row> {
     let horizon = |scene: &&dyn AnyScene| selection.end_s(*scene);
     let truths =
         in_parallel(&scenes, |_| 1, &Progress::silent(), |scene| ExactSamples::new(*scene, horizon(scene), SAMPLES));
-    let mut jobs = Vec::new();
+    let (mut jobs, mut group) = (Vec::new(), 0);
     for (scene, truth) in selection.scenes.iter().zip(&truths) {
         for candidate in candidates(scene.as_ref(), &selection.methods, &selection.schemes) {
-            jobs.extend(jobs_of(selection, scene.as_ref(), truth, candidate));
+            jobs.extend(jobs_of(selection, scene.as_ref(), truth, (candidate, group)));
+            group += 1;
         }
     }
     let cost = |job: &Job<'_>| {
         let arithmetic = if job.precisions.contains(&Precision::DoubleDouble) { 100 } else { 1 };
         job.span.steps * arithmetic * job.candidate.evaluations_a_step().unwrap_or(40)
     };
-    in_parallel(&jobs, cost, &selection.progress, Job::rows).into_iter().flatten().collect()
+    // What is timed of a candidate follows from all of its runs: a shard takes them together.
+    selection.rows_by(&jobs, |_, job| job.group, 1.8e-8, cost, Job::rows)
 }
 
 fn jobs_of<'a>(
     selection: &Selection,
     scene: &'a dyn AnyScene,
     truth: &'a ExactSamples<'a>,
-    candidate: Candidate,
+    (candidate, group): (Candidate, usize),
 ) -> Vec<Job<'a>> {
     let (end_s, coarsest) = (selection.end_s(scene), selection.coarsest_steps(scene));
     let finest = |&precision: &Precision| {
@@ -79,7 +83,7 @@ fn jobs_of<'a>(
         let wanted = |p: &&Precision| finest(p).is_some_and(|finest| steps <= finest);
         let precisions: Vec<Precision> = selection.precisions.iter().filter(wanted).copied().collect();
         let span = Span { end_s, steps };
-        (!precisions.is_empty()).then_some(Job { truth, scene, candidate, precisions, span })
+        (!precisions.is_empty()).then_some(Job { truth, scene, candidate, group, precisions, span })
     };
     all.into_iter().filter_map(job).collect()
 }
@@ -147,7 +151,12 @@ pub fn time(selection: &Selection, rows: &mut Vec<Row>) {
         let timed: Vec<(Task, Cost)> = tasks.into_iter().zip(costs).filter_map(|(t, c)| Some((t, c?))).collect();
         fill(rows, scene.id(), &timed);
         if !selection.quick && LONG.contains(&scene.id()) {
-            lengths.extend(length_rows(scene.as_ref(), selection, care));
+            let mine = selection.takes(&[0.5])[0];
+            let before = lengths.len();
+            if mine {
+                lengths.extend(length_rows(scene.as_ref(), selection, care));
+            }
+            selection.took(&[mine.then_some(lengths.len() - before)]);
         }
     }
     rows.append(&mut lengths);

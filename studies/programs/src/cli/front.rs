@@ -15,7 +15,7 @@ use measure::stability::Stability;
 use measure::tradeoff::Tradeoff;
 
 use super::messages::{complain, print};
-use super::{asking, bounds, exact, loops, main, order, report, stability, start, tradeoff, with_tables};
+use super::{asking, bounds, exact, loops, main, merge, order, report, stability, start, tradeoff, with_tables};
 
 /// A program: its name, what it does, and how it is run.
 struct Command {
@@ -77,6 +77,11 @@ const GROUPS: [(&str, &[Command]); 4] = [
                 name: "loops",
                 about: "what frames, substeps, damping and clocks do to a step",
                 run: || asking::<Loops, _>(loops::ask),
+            },
+            Command {
+                name: "merge",
+                about: "puts the shards of a run together (--shard K/N)",
+                run: || start(merge::WORDS, |flags| merge::run(&flags)),
             },
             Command { name: "ensemble", about: "errors over many starts", run: with_tables::<Ensemble> },
         ],

@@ -6,6 +6,7 @@ pub mod exact;
 pub mod front;
 mod list;
 pub mod loops;
+pub mod merge;
 mod messages;
 pub mod order;
 mod program;

@@ -10,8 +10,11 @@ use reports::{Block, Claim};
 use super::messages::{complain, note, of_flags, print};
 use super::{color, front, list};
 use crate::options::Common;
+use crate::parts;
 use crate::produce;
 use crate::produce::{Judged, REPORT, study};
+use crate::provenance::Manifest;
+use crate::shards::is_whole;
 use measure::error::Error;
 
 use crate::summary;
@@ -125,6 +128,9 @@ pub fn report() -> ExitCode {
             report list heavy-top",
     };
     of_studies(words, |common, _: &NoFlags| {
+        if let Some(ending) = beside(common, REPORT) {
+            return ending;
+        }
         let ending = Ending::of(common, &produce::report(common)?, summary::summary)?;
         let (out, page) = (common.out(REPORT), "index.html");
         let written = if common.figures_only { out } else { out.join(page) };
@@ -133,12 +139,34 @@ pub fn report() -> ExitCode {
 }
 
 fn run<S: Study>(common: &Common) -> Result<Ending, Error> {
+    parts::heeds::<S>(common)?;
+    if let Some(ending) = beside(common, S::ID) {
+        return ending;
+    }
     Ending::of(common, &study::<S>(common)?.0, summary::verdicts)
+}
+
+/// What is done in the place of a whole run: nothing, because it is there; a part of it; a forecast.
+fn beside(common: &Common, program: &str) -> Option<Result<Ending, Error>> {
+    let said = |text| Ending { text, note: None, code: 0 };
+    let out = common.out(program);
+    if common.dry_run {
+        return Some(parts::forecast(common, program).map(said));
+    }
+    if common.resume && is_whole(&out, &Manifest::of(&common.plan), common.shard, program) {
+        let note = format!("{program}: {} holds it whole already; nothing was run", out.display());
+        return Some(Ok(Ending { note: Some(note), ..said(String::new()) }));
+    }
+    Some(parts::shard(common, program, common.shard?).map(said))
 }
 
 /// A binary that runs one study and prints its tables before its claims.
 pub fn with_tables<S: Study>() -> ExitCode {
     of_studies(ProgramInfo::of::<S>(), |common, _: &NoFlags| {
+        parts::heeds::<S>(common)?;
+        if let Some(ending) = beside(common, S::ID) {
+            return ending;
+        }
         let (judged, section) = study::<S>(common)?;
         Ending::of(common, &judged, |claims| {
             let tables: String = section.blocks.iter().flat_map(tables).collect();
