@@ -2,6 +2,7 @@
 //! slurmd, slurm-client and munge.
 
 use std::fs;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -35,11 +36,9 @@ impl Slurm {
             at("log/d.log"),
         );
         fs::write(root.join("slurm.conf"), conf).expect("writable");
-        // Munge has a directory and a user of its own; where it runs already, it stays.
-        let munge = "mkdir -p /run/munge && chown munge: /run/munge && (pgrep -x munged || runuser -u munge -- /usr/sbin/munged --force)";
-        let status = Command::new("sh").args(["-c", munge]).stdout(Stdio::null()).stderr(Stdio::null()).status();
-        assert!(status.is_ok_and(|status| status.success()), "munged does not start: install munge, and run as root");
-        let mut slurm = Slurm { root: root.to_owned(), daemons: Vec::new() };
+        let mut daemons = Vec::new();
+        daemons.extend(munge());
+        let mut slurm = Slurm { root: root.to_owned(), daemons };
         for (daemon, more) in [("slurmctld", &["-D"][..]), ("slurmd", &["-D", "-N", "localhost"])] {
             let child = slurm.command(daemon).args(more).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
             slurm.daemons.push(child.unwrap_or_else(|error| panic!("{daemon}: {error}; install it")));
@@ -68,6 +67,23 @@ impl Slurm {
             std::thread::sleep(Duration::from_millis(200));
         }
     }
+}
+
+/// Munge, which has a directory and a user of its own; nothing where it runs already.
+fn munge() -> Option<Child> {
+    let is_running = Command::new("pgrep").args(["-x", "munged"]).stdout(Stdio::null()).status();
+    if is_running.is_ok_and(|status| status.success()) {
+        return None;
+    }
+    let id = |flag: &str| {
+        let output = Command::new("id").args([flag, "munge"]).output().expect("id is everywhere");
+        text(&output.stdout).trim().parse::<u32>().expect("the package munge makes a user munge: install it")
+    };
+    fs::create_dir_all("/run/munge").expect("root may write here");
+    std::os::unix::fs::chown("/run/munge", Some(id("-u")), Some(id("-g"))).expect("root may");
+    let mut command = Command::new("/usr/sbin/munged");
+    command.args(["--foreground", "--force"]).uid(id("-u")).gid(id("-g")).stdout(Stdio::null()).stderr(Stdio::null());
+    Some(command.spawn().expect("the package munge is installed"))
 }
 
 impl Drop for Slurm {
