@@ -55,7 +55,10 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).collect::<Vec<_>>();
     ends.into_iter().rev().find_map(|end| {
         let (number, rest) = text.split_at(end);
-        number.ends_with(|c: char| c.is_ascii_digit() || c == '.').then(|| fraction(number))?.map(|x| (x, rest.trim()))
+        let rest = rest.trim();
+        // '//60' is no unit: a name does not begin with a sign.
+        let is_split = number.ends_with(|c: char| c.is_ascii_digit() || c == '.') && !rest.starts_with('/');
+        is_split.then(|| fraction(number))?.map(|x| (x, rest))
     })
 }
 
