@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -22,14 +23,19 @@ pub struct Chromium {
     /// Every event that came while an answer was waited for.
     pub events: Vec<Value>,
     _profile: tempfile::TempDir,
+    _turn: MutexGuard<'static, ()>,
 }
 
+/// One browser at a time: a second one on the same cores would be in the times that a page takes.
+static TURN: Mutex<()> = Mutex::new(());
+
 impl Chromium {
-    /// Starts the browser with an empty page.
+    /// Starts the browser with an empty page, as soon as no other test of this process has one.
     ///
     /// # Panics
     /// Where there is no `chromium` to start.
     pub fn start() -> Self {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let profile = tempfile::tempdir().expect("a temporary directory");
         // The pipe is expected at the descriptors 3 and 4, which only a shell sets without further ado.
         let mut process = Command::new("sh")
@@ -64,7 +70,7 @@ impl Chromium {
             }
         });
         let mut browser =
-            Chromium { process, to, from, session: None, asked: 0, events: Vec::new(), _profile: profile };
+            Chromium { process, to, from, session: None, asked: 0, events: Vec::new(), _profile: profile, _turn: turn };
         let target = browser.send("Target.createTarget", &json!({ "url": "about:blank" }));
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         browser.session = browser.send("Target.attachToTarget", &attach)["sessionId"].as_str().map(str::to_owned);
