@@ -274,6 +274,23 @@ fn the_command_answers_and_refuses() {
     assert!(code == Some(1) && said.contains("NOT stable") && said.contains("per 2 frames"), "{said}");
     let (code, said, _) = ask(&[&spring[..], &euler, &["--loop", "clamp=0.032"]].concat());
     assert!(code == Some(0) && said.contains("0.9900 s behind, 36.00 %"), "{said}");
+    // omega = 14.5 rad/s. At z = h omega = 2 an error grows linearly, which is not exponential; above it by z^2 / 2 - 1 + z sqrt(z^2 - 4) / 2.
+    for (step, code_of_it, verdict) in [
+        ("0.1379310344827586", Some(0), "  stable: an error changes by a factor of 1.000000 "),
+        ("0.1379308965517241", Some(0), "  stable: an error changes by a factor of 1.000000 "),
+        ("0.1379311724137931", Some(1), "NOT stable: an error grows by a factor of 1.002832 "),
+    ] {
+        let near_two = ["--step", step, "--for", "2"];
+        let (code, said, _) = ask(&[&spring[..6], &euler, &near_two, &["--loop", "substeps=1"]].concat());
+        assert!(code == code_of_it && said.contains(verdict), "{step}: {code:?} {said}");
+    }
+    // A frame shorter than the inner step draws the start, at its own time.
+    let early = ["--step", "0.01", "--for", "0.01", "--loop", "inner=0.02", "--loop", "drawn=interpolated"];
+    let (code, said, _) = ask(&[&spring[..6], &euler, &early].concat());
+    assert!(
+        code == Some(0) && said.contains("configuration at the end: 0 (") && !said.contains("drawn:"),
+        "{code:?} {said}"
+    );
     for (arguments, place) in [
         (&["--loop", "substeps=x"][..], "--loop substeps"),
         (&["--loop", "contct=end"], "did you mean 'contact'"),

@@ -292,6 +292,8 @@ impl<'a, M: Flat<N>, S: Steps<f64, Held<'a, M, SVector<f64, N>>>, const N: usize
         let mut drawn_s = simulated_s;
         match self.plan.drawn {
             Drawn::Last => {}
+            // Before the first step there is one state only.
+            Drawn::Interpolated if self.steps == 0 => {}
             Drawn::Interpolated => {
                 let part = if self.plan.inner_s.is_some() { left_s / self.span_s } else { 0.0 };
                 let between =

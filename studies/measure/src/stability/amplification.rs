@@ -111,15 +111,20 @@ impl Amplification {
     /// Whether no error grows exponentially. For two by two by Jury's conditions |det| <= 1, |tr| <= 1 + det, which are exact
     /// where the eigenvalues are not: at h omega = 2 they are a defective pair, and next to 1 a growth of h^2 is less than they round.
     pub fn is_stable(&self) -> Option<bool> {
+        self.is_stable_to(JURY, ROUNDING)
+    }
+
+    /// The same of entries that are known to a relative `of_entries`; the moduli of larger matrices to `of_moduli`.
+    pub fn is_stable_to(&self, of_entries: f64, of_moduli: f64) -> Option<bool> {
         if let [a, b, c, d] = self.entries[..] {
             let (trace, det) = (a + d, a * d - b * c);
             let terms = fx128::ONE + a.abs() + d.abs() + (a * d).abs() + (b * c).abs();
-            let most = fx128::ONE + terms * fx128::lit(JURY);
+            let most = fx128::ONE + terms * fx128::lit(of_entries);
             return (trace + det).is_finite().then(|| det.abs() <= most && trace.abs() <= most + det);
         }
         let values = self.eigenvalues()?;
         let not_neutral = values.iter().filter(|l| (l.re - 1.0).hypot(l.im) > NEUTRAL);
-        Some(not_neutral.map(|l| l.re.hypot(l.im)).fold(0.0, worse) <= 1.0 + ROUNDING)
+        Some(not_neutral.map(|l| l.re.hypot(l.im)).fold(0.0, worse) <= 1.0 + of_moduli)
     }
 
     fn faer(&self) -> Mat<f64> {
