@@ -135,8 +135,7 @@ fn line(runs: &[&Run]) -> Line {
     let reports: Vec<FileReport> = runs.iter().map(|run| judged(run)).collect();
     let (run, report) = (runs[0], &reports[0]);
     let rotates = report.error.iter().any(|error| error.quantity == "attitude");
-    let (quantity, moves) =
-        if rotates { ("attitude", Moves::Rotation) } else { ("position", Moves::Translation) };
+    let (quantity, moves) = if rotates { ("attitude", Moves::Rotation) } else { ("position", Moves::Translation) };
     let error = report.error.iter().find(|error| error.quantity == quantity).expect("an exact motion");
     let found = report.step.iter().find(|step| step.moves == moves).expect("a step");
     let order = orders(&reports).into_iter().find(|order| order.quantity == quantity);

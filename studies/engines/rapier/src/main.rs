@@ -13,7 +13,8 @@ fn number(value: &Value, name: &str) -> Result<f64, String> {
 fn run() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, path, rate, seconds] = &arguments[..] else { return Err("give case.json RATE SECONDS".to_owned()) };
-    let positive = |text: &String| text.parse::<f64>().ok().filter(|x| *x > 0.0).ok_or(format!("'{text}': give a number > 0"));
+    let positive =
+        |text: &String| text.parse::<f64>().ok().filter(|x| *x > 0.0).ok_or(format!("'{text}': give a number > 0"));
     let (rate, seconds) = (positive(rate)?, positive(seconds)?);
     let text = std::fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
     let case: Value = serde_json::from_str(&text).map_err(|error| format!("{path}: {error}"))?;
@@ -38,7 +39,8 @@ fn run() -> Result<(), String> {
     let parameters = IntegrationParameters { dt: 1.0 / rate, ..Default::default() };
     let (mut pipeline, mut islands) = (PhysicsPipeline::new(), IslandManager::new());
     let (mut broad, mut narrow) = (DefaultBroadPhase::new(), NarrowPhase::new());
-    let (mut joints, mut multibodies, mut ccd) = (ImpulseJointSet::new(), MultibodyJointSet::new(), CCDSolver::new());
+    let (mut joints, mut multibodies) = (ImpulseJointSet::new(), MultibodyJointSet::new());
+    let (mut soft, mut ccd) = (SoftBodySet::new(), CCDSolver::new());
 
     println!("t,qw,qx,qy,qz,wx_world,wy_world,wz_world");
     for i in 0..=(seconds * rate).round() as u64 {
@@ -46,8 +48,19 @@ fn run() -> Result<(), String> {
         let (q, w) = (body.rotation(), body.angvel());
         println!("{},{},{},{},{},{},{},{}", i as f64 / rate, q.w, q.x, q.y, q.z, w.x, w.y, w.z);
         pipeline.step(
-            Vector::ZERO, &parameters, &mut islands, &mut broad, &mut narrow, &mut bodies, &mut colliders, &mut joints,
-            &mut multibodies, &mut ccd, &(), &(),
+            Vector::ZERO,
+            &parameters,
+            &mut islands,
+            &mut broad,
+            &mut narrow,
+            &mut bodies,
+            &mut colliders,
+            &mut joints,
+            &mut multibodies,
+            &mut soft,
+            &mut ccd,
+            &(),
+            &(),
         );
     }
     Ok(())
