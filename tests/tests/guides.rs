@@ -91,6 +91,10 @@ fn run(document: &Path) {
     fs::create_dir_all(&data).expect("writable");
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
     fs::copy(root.join("studies/gate/data/bounds.csv"), data.join("bounds.csv")).expect("it is committed");
+    let engine = "studies/engines/data/rapier_f64";
+    fs::create_dir_all(temporary.path().join(engine)).expect("writable");
+    let file = format!("{engine}/A_240_nogyro.csv");
+    fs::copy(root.join(&file), temporary.path().join(&file)).expect("it is committed");
     let path = format!("{}:{}", tools.display(), std::env::var("PATH").unwrap_or_default());
     for Example { place, commands, shown } in examples(document) {
         let kept = commands.lines().filter(|line| !NOT_RUN.iter().any(|(not, _)| not == line));
@@ -135,7 +139,7 @@ fn every_command_of_the_guides_runs_as_it_is_written() {
     let describes = |document: &&PathBuf| {
         ["architecture.md", "columns.md", "lesson.md", "worksheet.md"].iter().any(|name| document.ends_with(name))
     };
-    assert_eq!(documents.iter().filter(|document| !describes(document)).count(), 8, "{documents:?}");
+    assert_eq!(documents.iter().filter(|document| !describes(document)).count(), 9, "{documents:?}");
     for document in documents.iter().filter(|document| !describes(document)) {
         assert!(examples(document).len() > 1, "{} has no commands", document.display());
         run(document);
