@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 }
 
 /// A file of a report, what one row of it is, and the type that is written.
-const FILES: [(&str, &str, &str, &str); 29] = [
+const FILES: [(&str, &str, &str, &str); 31] = [
     ("convergence.csv", "the errors of one quantity in one run", "studies/measure/src/convergence/mod.rs", "Row"),
     ("orders.csv", "the order of one sweep", "studies/measure/src/convergence/order_row.rs", "OrderRow"),
     ("drift.csv", "one invariant over a stretch of a long run", "studies/measure/src/drift/mod.rs", "Row"),
@@ -52,6 +52,18 @@ const FILES: [(&str, &str, &str, &str); 29] = [
         "one number printed elsewhere",
         "studies/measure/src/rotation/tables.rs",
         "PublishedLine",
+    ),
+    (
+        "tradeoff-which-method.csv",
+        "the method for one kind of scene and one error",
+        "studies/measure/src/tradeoff/which_table.rs",
+        "WhichRow",
+    ),
+    (
+        "tradeoff-60-hz.csv",
+        "one scheme on one free body at 60 Hz",
+        "studies/measure/src/tradeoff/step_rate.rs",
+        "AtRate",
     ),
     (
         "tradeoff-cost-at-error.csv",

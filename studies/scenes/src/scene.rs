@@ -4,6 +4,7 @@ use std::any::Any;
 
 use faer::fx128;
 use integrator::methods::MethodId;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::invariants::{Entry, Invariant};
@@ -11,9 +12,57 @@ use crate::observation::{Observation, Quantity};
 use crate::parameters::{Parameters, Substitute};
 use crate::theory::{ExpectedGrowth, StabilityLimit, Theory};
 
+/// What kind of motion a scene is, for a reader who looks for the one that is most like his own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// The force is the same everywhere and always.
+    ConstantForce,
+    /// A free flight between impacts.
+    Bounces,
+    /// A restoring force, with or without a periodic drive.
+    Oscillation,
+    /// A resistance takes the energy away.
+    Damping,
+    /// A path that closes, in a central field or a magnetic one.
+    Orbit,
+    /// A rigid body without a torque.
+    FreeBody,
+    /// A rigid body under a torque.
+    DrivenBody,
+}
+
+impl Kind {
+    /// All of them, in the order in which they are shown.
+    pub const ALL: [Kind; 7] = [
+        Kind::ConstantForce,
+        Kind::Bounces,
+        Kind::Oscillation,
+        Kind::Damping,
+        Kind::Orbit,
+        Kind::FreeBody,
+        Kind::DrivenBody,
+    ];
+
+    /// The kind in a few words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Kind::ConstantForce => "Constant force",
+            Kind::Bounces => "Bounces",
+            Kind::Oscillation => "Oscillation",
+            Kind::Damping => "Damping",
+            Kind::Orbit => "Orbit",
+            Kind::FreeBody => "Free rigid body",
+            Kind::DrivenBody => "Rigid body with torque",
+        }
+    }
+}
+
 /// What a reader should know of a scene before looking at its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Info {
+    /// What kind of motion it is.
+    pub kind: Kind,
     /// One line: what moves, and why it is looked at.
     pub about: &'static str,
     /// The equation of motion, in LaTeX.

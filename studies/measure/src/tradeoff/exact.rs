@@ -76,6 +76,19 @@ impl<'a> ExactSamples<'a> {
         over(run.seen.iter().map(|(step, seen)| self.distance(*step, steps, seen)))
     }
 
+    /// The largest error of the attitude of a rigid body at the samples of a finished run, rad; `None` for another scene.
+    pub fn attitude_error(&self, run: &Trajectory, steps: u64) -> Option<f64> {
+        if run.outcome != Outcome::Finished || !self.scene.is_rigid() {
+            return None;
+        }
+        let attitude = Of::Quantity(Quantity::Attitude);
+        let error = |(step, seen): &(u64, Observation)| {
+            let (t, exact) = (self.time(*step, steps), self.exact.at_step(self.scene, *step, steps));
+            largest_distance(&attitude.values(self.scene, t, seen), &attitude.values(self.scene, t, &exact))
+        };
+        largest(run.seen.iter().map(error)).filter(|error| error.is_finite())
+    }
+
     /// The distance from the exact motion at a step.
     fn distance(&self, step: u64, steps: u64, seen: &Observation) -> f64 {
         let (t, exact) = (self.time(step, steps), self.exact.at_step(self.scene, step, steps));

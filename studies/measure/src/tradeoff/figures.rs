@@ -7,7 +7,7 @@ use reports::{Axis, Figure, Layer, Line, Series};
 use super::candidate::Candidate;
 use super::cost_at_error::sweeps;
 use super::rounding_optimum::{INDEPENDENT, Minimum, SHOWN, minima};
-use super::{CostMeasure, Part, Row};
+use super::{CostMeasure, Part, Row, overview};
 use crate::names::scene_title;
 use crate::study::color_of;
 use scenes::run::Precision;
@@ -28,7 +28,7 @@ const LARGEST_ERROR: f64 = 10.0;
 pub(super) fn all(rows: &[Row]) -> Vec<Figure> {
     let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
     let minima = minima(rows);
-    let mut figures = Vec::new();
+    let mut figures: Vec<Figure> = overview::figure(rows).into_iter().collect();
     for of_scene in runs.chunk_by(|a, b| a.scene == b.scene) {
         let sweeps = sweeps(of_scene);
         figures.extend(CostMeasure::ALL.into_iter().filter_map(|charge| work(&sweeps, charge)));

@@ -18,6 +18,7 @@ pub mod exact;
 mod figures;
 pub mod front;
 pub mod limit;
+mod overview;
 pub mod path;
 mod peers;
 pub mod quantity;
@@ -25,8 +26,11 @@ pub mod rounding_optimum;
 pub mod runs;
 pub mod search;
 pub mod stagnation;
+pub mod step_rate;
 mod tables;
 pub mod verdict;
+pub mod which;
+mod which_table;
 
 use reports::{Claim, Figure};
 use serde::{Deserialize, Serialize};
@@ -63,6 +67,9 @@ pub struct Row {
     pub steps: u64,
     /// Step, s.
     pub h_s: f64,
+    /// The natural time scale of the scene, s: 1/omega of an oscillation, 1/k of a damping.
+    #[serde(default)]
+    pub time_scale_s: Option<f64>,
     /// Unit of the errors.
     #[serde(default)]
     pub unit: String,
@@ -74,6 +81,9 @@ pub struct Row {
     /// Largest error at 32 evenly spaced times, the end among them.
     #[serde(default)]
     pub error: Option<f64>,
+    /// Largest error of the attitude of a rigid body at the same times, rad.
+    #[serde(default)]
+    pub attitude_error: Option<f64>,
     /// Largest distance from the run of the same step in the next finer arithmetic, at the same times.
     #[serde(default)]
     pub rounding: Option<f64>,
@@ -138,8 +148,8 @@ impl Study for Tradeoff {
     const KINDS: &'static [Kind] = &[
         Kind {
             part: "run",
-            columns: "scene,method,precision,steps,h_s,unit,outcome,error_end,error,rounding,scale,evaluations,\
-                      timed_steps,least_ns_per_step,median_ns_per_step,upper_ns_per_step,cycles_per_step",
+            columns: "scene,method,precision,steps,h_s,time_scale_s,unit,outcome,error_end,error,attitude_error,rounding,\
+                      scale,evaluations,timed_steps,least_ns_per_step,median_ns_per_step,upper_ns_per_step,cycles_per_step",
         },
         Kind {
             part: "length",
@@ -193,10 +203,12 @@ impl Row {
             precision,
             steps,
             h_s,
+            time_scale_s: None,
             unit: String::new(),
             outcome: Outcome::Finished,
             error_end: None,
             error: None,
+            attitude_error: None,
             rounding: None,
             scale: None,
             evaluations: 0,

@@ -113,10 +113,12 @@ impl Job<'_> {
         let Span { end_s, steps } = self.span;
         let errors = self.truth.errors(run, steps);
         Row {
+            time_scale_s: Some(self.scene.scene().info().time_scale_s),
             unit: self.truth.unit().to_owned(),
             outcome: run.outcome,
             error_end: errors.map(|e| e.end),
             error: errors.map(|e| e.largest),
+            attitude_error: self.truth.attitude_error(run, steps),
             rounding: finer.and_then(|finer| apart(run, finer)),
             scale: Some(self.truth.scale()),
             evaluations: run.evaluations,

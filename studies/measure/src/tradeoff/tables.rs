@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::cells::{cost_measure_name, label, runs};
 use super::cost_at_error::{CostAtError, LEVELS, prices};
 use super::front::front;
-use super::{CostMeasure, Part, Row, comparison_tables, cost_tables, peers, rounding_optimum};
+use super::{CostMeasure, Part, Row, comparison_tables, cost_tables, peers, rounding_optimum, step_rate, which_table};
 use crate::error::Error;
 use crate::study::{Derived, distinct, short};
 use scenes::run::Precision;
@@ -16,7 +16,9 @@ use scenes::run::Precision;
 /// # Errors
 /// Rows that have no form as CSV.
 pub(super) fn all(rows: &[Row]) -> Result<Vec<Derived>, Error> {
-    let mut tables = vec![comparison_tables::question(rows)?];
+    let mut tables = vec![which_table::which_method(rows)?];
+    tables.extend(step_rate::table(rows)?);
+    tables.push(comparison_tables::question(rows)?);
     for charge in CostMeasure::ALL {
         tables.push(comparison_tables::semi_implicit(rows, charge)?);
     }

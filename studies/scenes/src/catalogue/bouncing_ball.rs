@@ -22,7 +22,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Kind, Pace, Scene};
 use crate::special::elementary::{expm1, log1p};
 use crate::special::scaled::Scaled;
 use crate::theory::Law;
@@ -282,6 +282,7 @@ impl Scene for BouncingBall {
             pace.horizon_s *= 0.5;
         }
         Info {
+            kind: Kind::Bounces,
             about: "a ball whose bounces are seen at the end of a step: no method is better than first order",
             equation: r"\ddot x = -g;\quad x < 0,\ v < 0:\ v\to -e\,v",
             source: "parabolas and a geometric series (E. Falcon et al., Eur. Phys. J. B 3 (1998) 45)",

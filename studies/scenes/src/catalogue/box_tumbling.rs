@@ -18,7 +18,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, period, time_scale};
 use crate::special::free_top::FreeTop;
 use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::Theory;
@@ -75,6 +75,7 @@ impl Scene for BoxTumbling {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 0.75, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 5.0);
         Info {
+            kind: Kind::FreeBody,
             about: "a box thrown and spun nearly about its intermediate axis: the setting of a published engine benchmark",
             equation: r"\ddot{\mathbf x} = \mathbf g,\quad I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega",
             source: "Galilei 1638 and Jacobi 1849; setting of Peters and Hsu 2014 (Gazebo)",

@@ -20,7 +20,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period};
+use crate::scene::{Info, Kind, Pace, Scene, period};
 use crate::special::elementary::{sinc, versine_over_square, x_minus_sin};
 use crate::special::scaled::{Scaled, exponent_of_largest, sum_of_vectors, times_two_to};
 use crate::theory::Law;
@@ -134,6 +134,7 @@ impl Scene for ChargedParticle {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.gyration() / 2.0);
         Info {
+            kind: Kind::Orbit,
             about: "a charge in crossed fields: the force depends on the velocity, and both Eulers gain energy alike",
             equation: r"m\,\dot{\mathbf v} = q\,(\mathbf E + \mathbf v\times\mathbf B)",
             source: "J. D. Jackson, Classical Electrodynamics (1999), 12.2 and 12.3",

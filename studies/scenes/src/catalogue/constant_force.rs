@@ -14,7 +14,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Scene};
+use crate::scene::{Info, Kind, Scene};
 use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::{ExpectedGrowth, Theory};
 
@@ -68,6 +68,7 @@ impl<T: Single> Motion<T> for ConstantForce {
 impl Scene for ConstantForce {
     fn info(&self) -> Info {
         Info {
+            kind: Kind::ConstantForce,
             about: "a projectile in R^3: every polynomial-exact method is exact, the Eulers are off by -+ a t h / 2",
             equation: r"m\,\ddot{\mathbf x} = \mathbf F",
             source: "x0 + v0 t + a t^2 / 2 (Galilei 1638)",

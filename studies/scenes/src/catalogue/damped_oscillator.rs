@@ -15,7 +15,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::{Substitute, scene_parameters};
-use crate::scene::{Info, Pace, Scene, period};
+use crate::scene::{Info, Kind, Pace, Scene, period};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -88,6 +88,7 @@ impl Scene for DampedOscillator {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.oscillation().fastest() / 2.0);
         Info {
+            kind: Kind::Damping,
             about: "a damped mass on a spring: under-damped, critical (a double root) or over-damped (two rates)",
             equation: r"m\,\ddot x = -k\,x - c\,\dot x,\quad c = 2\zeta\sqrt{k\,m}",
             source: "elementary",

@@ -15,7 +15,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::Motion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::{Substitute, scene_parameters};
-use crate::scene::{Info, Pace, Scene, period};
+use crate::scene::{Info, Kind, Pace, Scene, period};
 use crate::special::scaled::Scaled;
 use crate::theory::{StabilityLimit, Theory};
 
@@ -90,6 +90,7 @@ impl Scene for ForcedOscillator {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.oscillation().fastest() / 3.25);
         Info {
+            kind: Kind::Oscillation,
             about: "a driven oscillator: the force depends on time, so that the stage times of a method count",
             equation: r"m\,\ddot x = -k\,x - c\,\dot x + F\cos\Omega t",
             source: "elementary; the response as a divided difference of exponentials",

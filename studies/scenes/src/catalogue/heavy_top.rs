@@ -16,7 +16,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, time_scale};
 use crate::special::lagrange_top::LagrangeTop;
 use crate::special::scaled::Scaled;
 
@@ -78,6 +78,7 @@ impl Scene for HeavyTop {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 1.75, coarsest_steps: 8 }.at(self.rate() / 4.1);
         Info {
+            kind: Kind::DrivenBody,
             about: "a top that precesses and nutates under gravity: the torque depends on the attitude",
             equation: r"I\,\dot{\omega} = I\omega\times\omega + m g l\,\mathbf e_3\times R^{T}\mathbf d,\quad \dot q = \tfrac12\,q\,\omega,\quad \mathbf d = (0, 0, -1)",
             source: "Lagrange 1788, by elliptic integrals",

@@ -15,7 +15,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period};
+use crate::scene::{Info, Kind, Pace, Scene, period};
 use crate::special::elementary::nearest_turn;
 use crate::special::kepler::{eccentric_anomaly, slope};
 use crate::special::scaled::Scaled;
@@ -120,6 +120,7 @@ impl Scene for Kepler {
         let coarsest_steps = if e > 0.8 { 32 } else { 16 };
         let pace = Pace { horizon_s: HORIZON_S, coarsest_steps }.at(self.fastest() / 1.75);
         Info {
+            kind: Kind::Orbit,
             about: "a planet on an ellipse: energy, angular momentum and the turning of the ellipse over many orbits",
             equation: r"\ddot{\mathbf r} = -\mu\,\frac{\mathbf r}{|\mathbf r|^3}",
             source: "Kepler's equation (J. M. A. Danby, Fundamentals of Celestial Mechanics (1988), 6.3)",

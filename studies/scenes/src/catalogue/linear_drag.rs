@@ -16,7 +16,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Kind, Pace, Scene};
 use crate::special::elementary::expm1;
 use crate::special::scaled::{Scaled, sum_of_vectors};
 use crate::theory::{StabilityLimit, Theory};
@@ -99,6 +99,7 @@ impl Scene for LinearDrag {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(self.k() / 0.75);
         Info {
+            kind: Kind::Damping,
             about: "a projectile with drag -c v: the simplest force that depends on the velocity",
             equation: r"m\,\dot{\mathbf v} = m\,\mathbf g - c\,\mathbf v",
             source: "elementary (I. Newton, Principia (1687), book II, section I)",

@@ -19,7 +19,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, time_scale};
 
 scene_parameters! {
     /// A rigid body on a prescribed motion, held to it by loads that depend on time, position, velocity, attitude and omega.
@@ -150,6 +150,7 @@ impl Scene for Manufactured {
         let faster = self.rate() / Self::default().rate();
         let pace = Pace { horizon_s: 1.75, coarsest_steps: 4 }.at(faster);
         Info {
+            kind: Kind::DrivenBody,
             about: "a prescribed motion of a rigid body under loads that depend on everything: no term goes untested",
             equation: r"m\,\ddot{\mathbf x} = \mathbf F(t, \mathbf x, \mathbf v, q),\quad I\,\dot{\omega} = I\omega\times\omega + \tau(t, \mathbf x, \mathbf v, q, \omega)",
             source: "manufactured solution (Roache 2002)",

@@ -17,7 +17,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period};
+use crate::scene::{Info, Kind, Pace, Scene, period};
 use crate::special::elementary::sinc;
 use crate::special::scaled::Scaled;
 use crate::theory::Law;
@@ -111,6 +111,7 @@ impl Scene for Oscillator {
         let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.omega() / 2.0);
         let time_scale_s = 1.0 / self.omega();
         Info {
+            kind: Kind::Oscillation,
             about: "a mass on a spring with a general phase: explicit Euler gains energy, semi-implicit Euler does not",
             equation: r"m\,\ddot x = -k\,x",
             source: "elementary",

@@ -17,7 +17,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, time_scale};
 use crate::special::elementary::{asinh, atan, nearest_turn, sech, sinc, sinh, versine_over_square};
 use crate::special::elliptic;
 use crate::special::jacobi::Modulus;
@@ -163,6 +163,7 @@ impl Scene for Pendulum {
         let scale_s = time_scale(self.omega0().to_f64().max(0.25 * self.omega.abs()));
         let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at((1.0 / scale_s) / 2.5);
         Info {
+            kind: Kind::Oscillation,
             about: "a pendulum with wide swings: libration, rotation, and the slow passage between them",
             equation: r"\ddot\theta = -\frac{g}{l}\sin\theta",
             source: "Jacobi's elliptic functions (E. T. Whittaker, Analytical Dynamics (1937), section 44)",

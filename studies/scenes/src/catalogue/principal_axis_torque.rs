@@ -18,7 +18,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, time_scale};
 use crate::special::scaled::{Scaled, unit_quaternion};
 use crate::theory::Theory;
 
@@ -98,6 +98,7 @@ impl Scene for PrincipalAxisTorque {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }
             .at((self.omega.abs() + self.torque.abs() / self.inertia[self.index()] * 2.25) / 2.94);
         Info {
+            kind: Kind::DrivenBody,
             about: "spun up about a principal axis: no gyroscopic term, the Eulers' attitude is off by -+ alpha t h / 2",
             equation: r"I_k\,\dot\omega_k = \tau_k,\quad \dot q = \tfrac12\,q\,\omega_k\mathbf e_k",
             source: "elementary",

@@ -17,7 +17,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Kind, Pace, Scene};
 use crate::special::elementary::{atan, expm1, log1p, log1p_over, sinc, sinh, tanh, versine_over_square};
 use crate::special::scaled::Scaled;
 use crate::theory::{ExpectedOrder, StabilityLimit, Theory};
@@ -173,6 +173,7 @@ impl Scene for QuadraticDrag {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.75, coarsest_steps: 8 }.at(self.rate() / 0.78);
         Info {
+            kind: Kind::Damping,
             about: "a fall with drag -c v |v|: smooth while it falls, with a kink of the force at the apex of a throw",
             equation: r"m\,\dot v = m\,g - c\,v\,|v|",
             source: "E. J. Routh, Dynamics of a Particle (1898), article 117",

@@ -17,7 +17,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, time_scale};
 use crate::special::sphere_torque::SphereTop;
 use crate::theory::Theory;
 
@@ -68,6 +68,7 @@ impl Scene for SphereTorque {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }
             .at((Vector3::from(self.omega).norm() + Vector3::from(self.torque).norm() / self.inertia * 2.25) / 5.5);
         Info {
+            kind: Kind::DrivenBody,
             about: "a sphere under an oblique torque: rotations that do not commute, but no gyroscopic term",
             equation: r"I\,\dot{\omega} = \tau,\quad \dot q = \tfrac12\,\omega\,q",
             source: "Zener 1932 (Landau-Zener), by power series, and by the adiabatic series of a slow turn",

@@ -15,7 +15,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::{Motion, rounded};
 use crate::observation::{Observation, Quantity};
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene};
+use crate::scene::{Info, Kind, Pace, Scene};
 use crate::special::elementary::sinc;
 use crate::special::scaled::{Scaled, exponent_of_largest, f64_times_two_to};
 use crate::theory::Law;
@@ -172,6 +172,7 @@ impl Scene for SpringChain {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 4 }.at(self.stiffest() / 5.6);
         Info {
+            kind: Kind::Oscillation,
             about: "sixteen masses and springs: the stiffest mode sets the step, whether it moves or not",
             equation: r"m\,\ddot x_i = k\,(x_{i-1} - 2x_i + x_{i+1}),\quad i = 1,\dots,16,\quad x_0 = x_{17} = 0",
             source: "normal modes (A. L. Fetter, J. D. Walecka, Theoretical Mechanics (1980), section 24)",

@@ -18,7 +18,7 @@ use crate::invariants::{Entry, Invariant};
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, period, time_scale};
 use crate::special::symmetric_top::SymmetricTop as Exact;
 use crate::theory::Law;
 use crate::theory::{ExpectedGrowth, StabilityLimit};
@@ -83,6 +83,7 @@ impl Scene for SymmetricTop {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 1.6);
         Info {
+            kind: Kind::FreeBody,
             about: "a free body with an axis of symmetry: it precesses about the momentum at a constant rate",
             equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_1, I_3)",
             source: "elementary (Landau and Lifshitz, Mechanics, section 35)",

@@ -15,7 +15,7 @@ use crate::invariants::Entry;
 use crate::motion::RigidMotion;
 use crate::observation::Observation;
 use crate::parameters::scene_parameters;
-use crate::scene::{Info, Pace, Scene, period, time_scale};
+use crate::scene::{Info, Kind, Pace, Scene, period, time_scale};
 use crate::special::free_top::FreeTop;
 
 scene_parameters! {
@@ -61,6 +61,7 @@ impl Scene for TorqueFreeSpin {
     fn info(&self) -> Info {
         let pace = Pace { horizon_s: 2.25, coarsest_steps: 8 }.at(Vector3::from(self.omega).norm() / 1.95);
         Info {
+            kind: Kind::FreeBody,
             about: "a free body with three unequal moments of inertia: only the gyroscopic term acts",
             equation: r"I\,\dot{\omega} = I\omega\times\omega,\quad \dot q = \tfrac12\,q\,\omega,\quad I = \mathrm{diag}(I_1, I_2, I_3)",
             source: "Jacobi 1849; attitude by Legendre's third integral (E. Celledoni et al., SIAM J. Sci. Comput. 30 (2008))",
