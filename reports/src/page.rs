@@ -22,6 +22,8 @@ pub struct Page {
     pub lead: String,
     /// Pages beside this one that a reader should know of at once: what each is, and its name.
     pub links: Vec<(String, String)>,
+    /// What answers the reader's question before anything else; its ids are as unique as those of the sections.
+    pub answer: Vec<Block>,
     /// What was found, most important first.
     pub findings: Vec<Finding>,
     /// The studies.
@@ -121,7 +123,11 @@ impl Page {
     }
 
     fn blocks(&self) -> Vec<&Block> {
-        self.sections.iter().flat_map(Section::all_blocks).collect()
+        self.answer
+            .iter()
+            .flat_map(Block::and_inner)
+            .chain(self.sections.iter().flat_map(Section::all_blocks))
+            .collect()
     }
 
     fn claims(&self) -> Vec<&Claim> {

@@ -17,6 +17,7 @@ use measure::tradeoff::front::front;
 use measure::tradeoff::rounding_optimum::minima;
 use measure::tradeoff::stagnation::{HEIGHTS_M, moves, predicted_s};
 use measure::tradeoff::verdict::{Factor, comparisons};
+use measure::tradeoff::which::{ERRORS, choices};
 use measure::tradeoff::{CostMeasure, Part, Row, Tradeoff};
 
 const SCENES: [&str; 5] = ["constant-force", "oscillator", "pendulum", "kepler", "tennis-racket"];
@@ -316,4 +317,58 @@ fn what_two_sweeps_leave_open_is_not_counted() {
     // Without the dear one 0.5 and > 25.6 are left, and the upper middle is a bound.
     let rest: Vec<Row> = rows.into_iter().filter(|row| row.scene != "dear").collect();
     assert_eq!(line(&rest), ["3", "2", "1", ""]);
+}
+
+/// Two oscillations of time scales 1/2 s and 2 s and sizes 1 and 10, with errors c h^p: what each method needs is known.
+#[test]
+fn the_method_that_is_named_does_the_least_work() {
+    let template = of_scene("oscillator").into_iter().find(|row| row.precision == Precision::F64).expect("a run");
+    // Error at the step h, relative to the size, with h in time scales: 0.32 h, 0.08 h^2 and 0.01 h^4; evaluations a step 1, 2, 4.
+    let methods = [("semi-implicit-euler", 0.32, 1, 1), ("velocity-verlet", 0.08, 2, 2), ("rk4", 0.01, 4, 4)];
+    let mut rows = Vec::new();
+    for (scene, time_scale_s, scale) in [("oscillator", 0.5, 1.0), ("pendulum", 2.0, 10.0)] {
+        for (method, c, order, evaluations) in methods {
+            for (k, precision) in (0..16).flat_map(|k| [(k, Precision::F64), (k, Precision::F32)]) {
+                let h = 4.0 / f64::from(1_u32 << k);
+                rows.push(Row {
+                    scene: scene.to_owned(),
+                    method: method.to_owned(),
+                    precision,
+                    steps: 1 << k,
+                    h_s: h * time_scale_s,
+                    time_scale_s: Some(time_scale_s),
+                    scale: Some(scale),
+                    evaluations: evaluations << k,
+                    error: Some(c * h.powi(order) * scale),
+                    ..template.clone()
+                });
+            }
+        }
+    }
+    let found = choices(&rows);
+    assert_eq!(found.len(), ERRORS.len(), "one kind");
+    // h of an error e is (e / c)^(1/p): 1/32, 0.354 and 1 for a hundredth; work is evaluations over h.
+    for (choice, error) in found.iter().zip(ERRORS) {
+        let best = choice.best.as_ref().expect("a method");
+        let step = (error / 0.01_f64).powf(0.25);
+        let work = (4.0 / step) / (0.32 / error);
+        let is = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+        assert_eq!((best.method.as_str(), choice.scenes, best.reached, best.never), ("rk4", 2, 2, 0));
+        assert!(is(best.step, step), "{error}: {} is not {step}", best.step);
+        if error > 1e-5 {
+            assert!(
+                best.work.is_some_and(|found| is(found, work)) && !best.work_is_at_most,
+                "{error}: {best:?} {work}"
+            );
+        } else {
+            // The sweep of semi-implicit Euler ends at h = 4 / 2^15 above the error: its work is a lower bound.
+            assert!(best.work.is_some_and(|found| is(found, 4.0 / step / 8192.0)) && best.work_is_at_most, "{best:?}");
+        }
+    }
+    // Ten times the constant of RK4, and Verlet leads at a hundredth: 2 / 0.354 evaluations a time scale beside 4 / 0.562.
+    for row in rows.iter_mut().filter(|row| row.method == "rk4") {
+        row.error = row.error.map(|e| 10.0 * e);
+    }
+    let best = choices(&rows).swap_remove(0).best.expect("a method");
+    assert!(best.method == "velocity-verlet" && (best.step - 0.125_f64.sqrt()).abs() < 1e-9, "{best:?}");
 }

@@ -1,15 +1,16 @@
-//! What a busy reader sees first: verdicts by study, what is broken, and the findings.
+//! What a busy reader sees first: the answer, what is broken, the findings, and the verdicts by study.
 
-use super::{Finding, Page, mark};
+use super::{Block, Finding, Page, mark};
 use crate::{Error, Verdict, claim, plot};
 use maud::{Markup, PreEscaped, html};
 
 impl Page {
     /// # Errors
-    /// A figure that cannot be drawn.
+    /// A figure or a formula that cannot be drawn.
     pub(super) fn opening(&self) -> Result<Markup, Error> {
         let numbered = self.findings.iter().enumerate();
         let findings = numbered.map(|(i, one)| self.finding(i, one)).collect::<Result<Vec<_>, _>>()?;
+        let answer = self.answer.iter().map(Block::markup).collect::<Result<Vec<_>, _>>()?;
         Ok(html! {
             div.opening {
                 h1 { (self.title) }
@@ -17,12 +18,13 @@ impl Page {
                 @if !self.links.is_empty() {
                     p.links { @for (text, file) in &self.links { a.button href=(file) { (text) } " " } }
                 }
-                (self.verdicts())
                 (self.broken())
+                @for block in &answer { (block) }
                 @if !findings.is_empty() {
                     h2 #findings { "What matters" }
                     ol.findings { @for finding in &findings { li { (finding) } } }
                 }
+                (self.verdicts())
             }
         })
     }

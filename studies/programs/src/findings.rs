@@ -23,7 +23,7 @@ const DRAFTS: [Draft; 4] = [
             format!(
                 "Both methods make the same two updates, in another order. On the oscillator the energy of explicit Euler grows \
                  exponentially (rate {} 1/s). The energy of semi-implicit Euler stays in the band that theory gives. Both evaluate \
-                 the force once per step.",
+                 the force once per step: take semi-implicit Euler wherever explicit Euler is in use.",
                 list(n[1], ", ")
             )
         },
@@ -36,7 +36,8 @@ const DRAFTS: [Draft; 4] = [
         text: |n| {
             format!(
                 "Semi-implicit Euler gains energy on a free asymmetric body: h²/2 times {} W/s per step. An engine without the \
-                 gyroscopic term makes an error that does not fall with the step, on {} scenes.",
+                 gyroscopic term makes an error that does not fall with the step, on {} scenes. \
+                 Keep the term, and take a scheme of order 2 for bodies that spin freely.",
                 list(n[0], ", "),
                 list(n[1], ", ")
             )
@@ -54,7 +55,8 @@ const DRAFTS: [Draft; 4] = [
             format!(
                 "RK4 reaches an error of 0.01 m or rad with fewer evaluations of the force on {} scenes. At an error of 0.1 \
                  semi-implicit Euler costs no more on a third of the scenes. It costs less than implicit Euler on nearly all of \
-                 them. In f32 every method has a step below which its error grows.",
+                 them. In f32 every method has a step below which its error grows. Take velocity Verlet for 1 %, \
+                 RK4 for less, and a step no smaller than the error asks for.",
                 list(n[0], " of ")
             )
         },
@@ -67,7 +69,8 @@ const DRAFTS: [Draft; 4] = [
         text: |n| {
             format!(
                 "Below the limit the error is bounded; above it every run grows without bound. The stiffest spring of a scene sets \
-                 the largest step, whether it moves or not. RK4 fails at {}; explicit Euler without damping has no stable step.",
+                 the largest step, whether it moves or not. RK4 fails at {}; explicit Euler without damping has no stable step. \
+                 Keep h ω of the stiffest spring below the limit, or take an implicit method for it.",
                 list(n[1], " to ")
             )
         },

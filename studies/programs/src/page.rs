@@ -2,7 +2,7 @@
 //!
 //! It follows from the products of the studies and from the scenes' own statements. Nothing is run here.
 
-use reports::{Block, Claim, Page, Section, Table};
+use reports::{Block, Claim, Page, Section, Table, Verdict};
 
 use crate::findings::findings;
 use crate::reference::methods_and_scenes;
@@ -23,6 +23,7 @@ pub fn html(
     footer: Vec<(String, String)>,
 ) -> Result<String, Error> {
     let findings = findings(&sections);
+    let answer = answer(&mut sections);
     sections.push(methods_and_scenes(scenes, &sections));
     let links = vec![("Drag the step and watch".to_owned(), teach::FILE.to_owned())];
     let page = Page {
@@ -31,11 +32,46 @@ pub fn html(
                it, what does it cost, and where does it break?"
             .to_owned(),
         links,
+        answer,
         findings,
         sections,
         footer,
     };
     Ok(page.html()?)
+}
+
+/// What tells which method to take, out of the section of its study, in the order of [`ANSWERS`].
+fn answer(sections: &mut [Section]) -> Vec<Block> {
+    let place = |block: &Block| {
+        let name = match block {
+            Block::Table { csv: Some(csv), .. } => csv.trim_end_matches(".csv"),
+            Block::Figure(figure) => figure.id.as_str(),
+            _ => return None,
+        };
+        ANSWERS.iter().position(|answer| *answer == name)
+    };
+    let all = sections.iter_mut().flat_map(|section| section.blocks.extract_if(.., |block| place(block).is_some()));
+    let mut answers: Vec<Block> = all.collect();
+    answers.sort_by_key(place);
+    answers
+}
+
+/// The tables, by the name of their CSV, and the chart that answer 'which method when'.
+const ANSWERS: [&str; 3] = ["tradeoff-which-method", "tradeoff-60-hz", "work-all-scenes"];
+
+/// More claims than this that all hold are folded.
+const UNFOLDED: usize = 12;
+
+/// A long list of claims about no one scene, under a heading that counts them where all hold; where one does not it stays open.
+fn folded(study: &str, block: Block) -> Block {
+    match block {
+        Block::Claims(claims) if claims.len() > UNFOLDED && claims.iter().all(|c| c.verdict == Verdict::Holds) => {
+            let note = format!("{} hold", claims.len());
+            let title = "Claims about several scenes".to_owned();
+            Block::Group { id: anchor(study, "claims"), title, note, blocks: vec![Block::Claims(claims)] }
+        }
+        other => other,
+    }
 }
 
 /// A file that the page links to, with the scene it is about: title and name.
@@ -46,7 +82,8 @@ pub(crate) fn section<S: Study>(mut rows: Vec<String>, blocks: Vec<Block>, linke
     rows.push(format!("{}-claims.csv", S::ID));
     let files = rows.into_iter().map(|name| (name.clone(), name)).collect();
     let rows = Block::Links { caption: "All rows and all claims".to_owned(), files };
-    let blocks = std::iter::once(rows).chain(by_scene(S::ID, blocks, linked)).collect();
+    let blocks =
+        std::iter::once(rows).chain(by_scene(S::ID, blocks, linked)).map(|block| folded(S::ID, block)).collect();
     Section { id: S::ID.to_owned(), title: S::TITLE.to_owned(), intro: S::INTRO.to_owned(), blocks }
 }
 
@@ -152,7 +189,6 @@ fn group(study: &str, scene: &str, blocks: Vec<Block>) -> Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use reports::Verdict;
 
     // Fails if: a name is looked for inside another.
     #[test]
@@ -166,6 +202,30 @@ mod tests {
     fn claim(scene: Option<&str>) -> Claim {
         let claim = Claim::new("drift", String::new(), Default::default(), Verdict::Holds);
         Claim { scene: scene.map(str::to_owned), ..claim }
+    }
+
+    // Fails if: an answer stays in its section or comes twice, their order changes, or a list with a broken claim is folded.
+    #[test]
+    fn the_answer_leaves_its_section_and_only_what_holds_is_folded() {
+        let table = |name: &str| Block::Table {
+            caption: String::new(),
+            table: Table::new(&["kind"], &[]),
+            csv: Some(format!("{name}.csv")),
+        };
+        let blocks = vec![table("tradeoff-60-hz"), table("tradeoff-costs"), table("tradeoff-which-method")];
+        let mut sections = [Section { blocks, ..Section::default() }];
+        let found = answer(&mut sections);
+        assert_eq!(found, [table("tradeoff-which-method"), table("tradeoff-60-hz")]);
+        assert_eq!(sections[0].blocks, [table("tradeoff-costs")]);
+
+        let many = |broken: usize| {
+            let mut claims = vec![claim(None); UNFOLDED + 1];
+            claims.iter_mut().take(broken).for_each(|claim| claim.verdict = Verdict::Broken);
+            folded("drift", Block::Claims(claims))
+        };
+        assert!(matches!(many(0), Block::Group { note, .. } if note == "13 hold"));
+        assert!(matches!(many(1), Block::Claims(claims) if claims.len() == 13));
+        assert!(matches!(folded("drift", Block::Claims(vec![claim(None); UNFOLDED])), Block::Claims(_)));
     }
 
     #[test]

@@ -109,8 +109,8 @@ pub(super) fn table(rows: &[Row]) -> Result<Option<Derived>, Error> {
     Ok(Some(Derived {
         name: "tradeoff-60-hz",
         caption: "A free rigid body at 60 Hz and 1°: the largest error of the attitude with a step of 1/60 s, in degrees, up to \
-                  the time in the head. First the schemes that keep 1° on all of these bodies, cheapest first; then semi-implicit \
-                  Euler. All other schemes are in the CSV.",
+                  the time in the head. First the cheapest schemes that keep 1° on all of these bodies, then semi-implicit Euler; \
+                  the others are in the CSV.",
         csv: reports::write_csv(&lines)?,
         table,
     }))

@@ -51,17 +51,17 @@ pub(super) fn which_method(rows: &[Row]) -> Result<Derived, Error> {
     let lines: Vec<WhichRow> = all.iter().map(line).collect();
     Ok(Derived {
         name: "tradeoff-which-method",
-        caption: "Which method when: the method with the least work, its largest step, and its work as a multiple of that of \
-                  semi-implicit Euler at the same error. The error is relative to the size of the motion (1 for an attitude), the \
-                  largest up to the end of the run. τ is the time scale: a period is 2π τ, a spin turns by one radian in τ. Work \
-                  is evaluations of the force, f64.",
+        caption: "Which method when: the method with the least work, its largest step, and how many times more work semi-implicit \
+                  Euler does for the same error. The error is relative to the size of the motion (1 for an attitude). τ is the \
+                  time scale: a period is 2π τ, a spin turns by one radian in τ. Work counts evaluations of the force, in f64.",
         csv: reports::write_csv(&lines)?,
         table,
     })
 }
 
+/// A part as a percentage where that is short.
 fn percent(error: f64) -> String {
-    format!("{} %", error * 100.0)
+    if error < 1e-4 { format!("{error:e}") } else { format!("{} %", error * 100.0) }
 }
 
 fn line(choice: &Choice) -> WhichRow {
@@ -82,18 +82,19 @@ fn line(choice: &Choice) -> WhichRow {
 
 fn cell(choice: &Choice) -> String {
     let Some(best) = &choice.best else { return "no method reaches it".to_owned() };
-    let at_least = if best.step_is_at_least { "≥" } else { "=" };
-    let mut words = format!("{}, h {at_least} {} τ, {}", label(&best.method), two(best.step), work(best));
+    let at_least = if best.step_is_at_least { "≥ " } else { "" };
+    let mut words = format!("{}, {at_least}{}\u{a0}τ, {}", label(&best.method), two(best.step), saving(best));
     if best.reached < choice.scenes {
         words += &format!(" ({} of {} scenes)", best.reached, choice.scenes);
     }
     words
 }
 
-fn work(best: &Best) -> String {
-    let at_most = if best.work_is_at_most { "≤ " } else { "" };
+/// How many times less work than semi-implicit Euler.
+fn saving(best: &Best) -> String {
+    let at_least = if best.work_is_at_most { "≥ " } else { "" };
     match best.work {
-        Some(work) => format!("work {at_most}{} ×", two(work)),
+        Some(work) => format!("{at_least}{}\u{a0}×", two(1.0 / work)),
         None => "semi-implicit Euler never".to_owned(),
     }
 }
