@@ -24,6 +24,7 @@ fn main() -> Result<(), Error> {
         title: "Gallery".to_owned(),
         lead: "Every kind of figure, table and claim, with made-up data.".to_owned(),
         links: Vec::new(),
+        answer: Vec::new(),
         findings: vec![Finding { title: head, text, figure: Some("convergence".to_owned()), ..Finding::default() }; 3],
         sections: vec![Section { id, title, intro, blocks }],
         footer: vec![("command".to_owned(), "cargo run -p reports --release --example gallery".to_owned())],

@@ -101,6 +101,9 @@ fn saving(best: &Best) -> String {
 
 /// Two digits: what a step or a ratio is worth that stands for several scenes.
 fn two(x: f64) -> String {
-    let digits = (1 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
-    format!("{x:.digits$}")
+    let places = 1 - x.abs().log10().floor() as i32;
+    let digits = places.clamp(0, 8) as usize;
+    // Above a hundred the digits that are left are zeros.
+    let unit = 10_f64.powi(-places.min(0));
+    if places < 0 { format!("{:.0}", (x / unit).round() * unit) } else { format!("{x:.digits$}") }
 }
