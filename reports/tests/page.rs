@@ -28,6 +28,7 @@ fn page() -> Page {
         title: words("Report"),
         lead: words("What it is."),
         links: vec![(words("Try it"), words("teach.html"))],
+        answer: vec![Block::Text(words("Which <method>?"))],
         findings: vec![Finding {
             title: words("First"),
             number: words("3.98"),
@@ -38,6 +39,14 @@ fn page() -> Page {
         sections: vec![Section { id: words("convergence"), title: words("Convergence"), intro: words("How?"), blocks }],
         footer: vec![(words("rustc"), words("1.90 <stable>"))],
     }
+}
+
+// Fails if: the answer is left out, or comes after the findings.
+#[test]
+fn the_answer_comes_before_the_findings() {
+    let html = page().html().expect("a proper page");
+    let [answer, findings] = ["Which &lt;method&gt;?", "id=\"findings\""].map(|part| html.find(part));
+    assert!(answer.is_some() && answer < findings, "{answer:?} {findings:?}");
 }
 
 #[test]
