@@ -1,6 +1,7 @@
 //! The programs: command line, plans, files, the report's page and the teaching page.
 
 pub mod cli;
+mod engines;
 pub mod exact;
 mod findings;
 pub mod options;

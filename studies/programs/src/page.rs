@@ -10,7 +10,7 @@ use measure::error::Error;
 use measure::names::{anchor, scene_title};
 use scenes::any::AnyScene;
 
-use crate::teach;
+use crate::{engines, teach};
 use measure::study::Study;
 
 /// The whole page: the studies, what matters most in them, methods and scenes, and where the numbers come from.
@@ -24,6 +24,7 @@ pub fn html(
 ) -> Result<String, Error> {
     let findings = findings(&sections);
     let answer = answer(&mut sections);
+    sections.push(engines::section()?);
     sections.push(methods_and_scenes(scenes, &sections));
     let links = vec![("Drag the step and watch".to_owned(), teach::FILE.to_owned())];
     let page = Page {
