@@ -283,15 +283,20 @@ pub struct Derived {
 
 /// A number for a reader: four digits, and a power of ten where it needs one.
 pub fn short(x: Option<f64>) -> String {
+    x.map_or_else(|| "–".to_owned(), |x| rounded(x, 4))
+}
+
+/// A number with so many significant digits, with an exponent where it is small or large.
+pub fn rounded(x: f64, digits: u8) -> String {
+    let after = i32::from(digits) - 1;
     match x {
-        None => "–".to_owned(),
-        Some(0.0) => "0".to_owned(),
-        Some(x) if !x.is_finite() => x.to_string(),
-        Some(x) if (1e-3..1e5).contains(&x.abs()) => {
-            let digits = (3 - x.abs().log10().floor() as i32).max(0) as usize;
-            format!("{x:.digits$}")
+        0.0 => "0".to_owned(),
+        x if !x.is_finite() => x.to_string(),
+        x if (1e-3..1e5).contains(&x.abs()) => {
+            let places = (after - x.abs().log10().floor() as i32).max(0) as usize;
+            format!("{x:.places$}")
         }
-        Some(x) => format!("{x:.3e}"),
+        x => format!("{x:.*e}", after as usize),
     }
 }
 

@@ -4,9 +4,13 @@ use reports::{Block, Section, Table};
 use serde::Deserialize;
 
 use measure::error::Error;
+use measure::study::rounded;
 
 /// The findings, computed from `studies/engines/data`; the test `engines_page` compares them byte for byte.
 const FOUND: &str = include_str!("../../engines/engines.csv");
+
+/// Digits of the numbers in it.
+const DIGITS: u8 = 3;
 
 #[derive(Deserialize)]
 struct Found {
@@ -39,9 +43,9 @@ pub(crate) fn section() -> Result<Section, Error> {
             format!("{}, {} steps per s: {}", found.case, found.steps_per_s.replace(' ', " and "), found.settings),
             // A name of many parts may be broken at each of them.
             step.replace('/', "/\u{200b}"),
-            format!("{} {}", three_digits(found.error_at_end), found.error_unit),
+            format!("{} {}", rounded(found.error_at_end, DIGITS), found.error_unit),
             found.order.map_or_else(|| "–".to_owned(), |order| format!("{order:.2}")),
-            [found.energy_law, found.energy_change].join(", "),
+            format!("{}, {}", found.energy_law, found.energy_change),
             found.findings,
         ]);
     }
@@ -59,12 +63,6 @@ pub(crate) fn section() -> Result<Section, Error> {
     })
 }
 
-/// The three digits that the file has.
-fn three_digits(x: f64) -> String {
-    let places = 2 - x.abs().log10().floor() as i32;
-    if (0..=5).contains(&places) { format!("{x:.*}", places as usize) } else { format!("{x:.2e}") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,7 +70,7 @@ mod tests {
     // Fails if: a digit is made up, or one is lost.
     #[test]
     fn a_number_has_three_digits() {
-        let shown = [1.67, 0.309, 0.00433, 2.53e-10, 12.5, 396.0].map(three_digits);
+        let shown = [1.67, 0.309, 0.00433, 2.53e-10, 12.5, 396.0].map(|x| rounded(x, DIGITS));
         assert_eq!(shown, ["1.67", "0.309", "0.00433", "2.53e-10", "12.5", "396"]);
     }
 

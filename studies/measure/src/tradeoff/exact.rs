@@ -82,17 +82,17 @@ impl<'a> ExactSamples<'a> {
             return None;
         }
         let attitude = Of::Quantity(Quantity::Attitude);
-        let error = |(step, seen): &(u64, Observation)| {
-            let (t, exact) = (self.time(*step, steps), self.exact.at_step(self.scene, *step, steps));
-            largest_distance(&attitude.values(self.scene, t, seen), &attitude.values(self.scene, t, &exact))
-        };
-        largest(run.seen.iter().map(error)).filter(|error| error.is_finite())
+        over(run.seen.iter().map(|(step, seen)| self.distance_of(attitude, *step, steps, seen))).map(|e| e.largest)
     }
 
     /// The distance from the exact motion at a step.
     fn distance(&self, step: u64, steps: u64, seen: &Observation) -> f64 {
+        self.distance_of(self.of, step, steps, seen)
+    }
+
+    fn distance_of(&self, of: Of, step: u64, steps: u64, seen: &Observation) -> f64 {
         let (t, exact) = (self.time(step, steps), self.exact.at_step(self.scene, step, steps));
-        largest_distance(&self.of.values(self.scene, t, seen), &self.of.values(self.scene, t, &exact))
+        largest_distance(&of.values(self.scene, t, seen), &of.values(self.scene, t, &exact))
     }
 
     fn time(&self, step: u64, steps: u64) -> fx128 {

@@ -6,30 +6,22 @@ use reports::{Axis, Figure, Layer, Series};
 use scenes::run::Precision;
 
 use super::candidate::Candidate;
-use super::cells::runs;
+use super::cells::{OfScene, by_scene};
 use super::cost_at_error::{CostBound, offer, sweeps};
 use super::{CostMeasure, Row};
-use crate::study::{color_of, distinct};
+use crate::study::color_of;
 
 /// Errors at which the work is read off: from a tenth down, three in a decade.
 const POINTS: i32 = 24;
 /// Fewer scenes than this are not 'all scenes'.
 const FEWEST: usize = 2;
 
-/// The sweeps of one scene with what makes them comparable.
-struct OfScene<'a> {
-    scale: f64,
-    time_scale_s: f64,
-    sweeps: Vec<(MethodId, Vec<&'a Row>)>,
-}
+/// A scene with its sweeps of general methods.
+type Swept<'a> = (OfScene<'a>, Vec<(MethodId, Vec<&'a Row>)>);
 
 /// A line for each general method: the median over the scenes of its work per time scale.
 pub(super) fn figure(rows: &[Row]) -> Option<Figure> {
-    let runs = runs(rows);
-    let scenes: Vec<OfScene<'_>> = distinct(runs.iter().map(|row| row.scene.as_str()))
-        .into_iter()
-        .filter_map(|scene| of_scene(&runs.iter().copied().filter(|row| row.scene == scene).collect::<Vec<_>>()))
-        .collect();
+    let scenes: Vec<Swept<'_>> = by_scene(rows).into_iter().map(swept).collect();
     if scenes.len() < FEWEST {
         return None;
     }
@@ -60,22 +52,20 @@ pub(super) fn figure(rows: &[Row]) -> Option<Figure> {
     })
 }
 
-fn of_scene<'a>(rows: &[&'a Row]) -> Option<OfScene<'a>> {
-    let general = |sweep: Vec<&'a Row>| {
-        let candidate = Candidate::from_id(&sweep[0].method)?;
+fn swept(scene: OfScene<'_>) -> Swept<'_> {
+    let general = |sweep: Vec<_>| {
+        let first: &Row = sweep[0];
+        let candidate = Candidate::from_id(&first.method)?;
         let is_shown = !candidate.is_rigid || candidate.scheme.storage == Formulation::BodyOmega;
-        candidate.method().filter(|_| is_shown && sweep[0].precision == Precision::F64).map(|method| (method, sweep))
+        candidate.method().filter(|_| is_shown && first.precision == Precision::F64).map(|method| (method, sweep))
     };
-    Some(OfScene {
-        scale: rows.iter().find_map(|row| row.scale).filter(|scale| *scale > 0.0 && scale.is_finite())?,
-        time_scale_s: rows.iter().find_map(|row| row.time_scale_s)?,
-        sweeps: sweeps(rows).into_iter().filter_map(general).collect(),
-    })
+    let sweeps = sweeps(&scene.runs).into_iter().filter_map(general).collect();
+    (scene, sweeps)
 }
 
 /// Evaluations per time scale; infinite where the error is not reached.
-fn work(scene: &OfScene<'_>, method: MethodId, error: f64) -> f64 {
-    let sweep = scene.sweeps.iter().find(|(known, _)| *known == method).map(|(_, sweep)| sweep);
+fn work((scene, sweeps): &Swept<'_>, method: MethodId, error: f64) -> f64 {
+    let sweep = sweeps.iter().find(|(known, _)| *known == method).map(|(_, sweep)| sweep);
     let Some((sweep, first)) = sweep.and_then(|sweep| Some((sweep, sweep.first()?))) else { return f64::INFINITY };
     let end_s = first.h_s * first.steps as f64;
     match offer(sweep, error * scene.scale, CostMeasure::Evaluations) {

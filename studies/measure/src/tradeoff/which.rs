@@ -6,9 +6,10 @@
 use integrator::methods::MethodId;
 use scenes::scene::Kind;
 
+use super::cells::{OfScene, by_scene};
 use super::cost_at_error::{CostAtError, CostBound, of_rule, prices};
 use super::verdict::{Factor, factor};
-use super::{CostMeasure, Part, Row};
+use super::{CostMeasure, Row};
 use crate::study::distinct;
 
 /// The errors asked for, relative to the largest size of the configuration: |x|, an angle, 1 for an attitude.
@@ -46,14 +47,6 @@ pub struct Best {
     pub never: usize,
 }
 
-/// The rows of one scene, and what they share.
-struct OfScene<'a> {
-    kind: Kind,
-    time_scale_s: f64,
-    scale: f64,
-    rows: Vec<&'a Row>,
-}
-
 /// What one method needs on one scene.
 struct Need {
     method: String,
@@ -66,28 +59,17 @@ struct Need {
 
 /// The choice for each kind among the rows and each error of [`ERRORS`].
 pub fn choices(rows: &[Row]) -> Vec<Choice> {
-    let scenes = by_scene(rows);
-    let kinds = Kind::ALL.into_iter().filter(|kind| scenes.iter().any(|scene| scene.kind == *kind));
-    kinds.flat_map(|kind| ERRORS.map(|error| choice(&scenes, kind, error))).collect()
-}
-
-fn by_scene(rows: &[Row]) -> Vec<OfScene<'_>> {
-    let runs: Vec<&Row> = rows.iter().filter(|row| row.part == Part::Run).collect();
-    let one = |id: &str| {
-        let rows: Vec<&Row> = runs.iter().copied().filter(|row| row.scene == id).collect();
-        Some(OfScene {
-            kind: scenes::by_id(id).ok()?.scene().info().kind,
-            time_scale_s: rows.iter().find_map(|row| row.time_scale_s)?,
-            scale: rows.iter().find_map(|row| row.scale).filter(|scale| *scale > 0.0 && scale.is_finite())?,
-            rows,
-        })
+    let kind = |scene: &OfScene<'_>| scenes::by_id(scene.scene).ok().map(|scene| scene.scene().info().kind);
+    let all: Vec<_> = by_scene(rows).into_iter().map(|scene| (kind(&scene), scene)).collect();
+    let of_kind = |kind| {
+        let scenes: Vec<_> = all.iter().filter(|(own, _)| *own == Some(kind)).map(|(_, scene)| scene).collect();
+        (!scenes.is_empty()).then(|| ERRORS.map(|error| choice(&scenes, kind, error)))
     };
-    distinct(runs.iter().map(|row| row.scene.as_str())).into_iter().filter_map(one).collect()
+    Kind::ALL.into_iter().filter_map(of_kind).flatten().collect()
 }
 
-fn choice(scenes: &[OfScene<'_>], kind: Kind, error: f64) -> Choice {
-    let of_kind: Vec<&OfScene<'_>> = scenes.iter().filter(|scene| scene.kind == kind).collect();
-    let needs: Vec<Need> = of_kind.iter().flat_map(|scene| needs(scene, error)).collect();
+fn choice(scenes: &[&OfScene<'_>], kind: Kind, error: f64) -> Choice {
+    let needs: Vec<Need> = scenes.iter().flat_map(|scene| needs(scene, error)).collect();
     let methods = distinct(needs.iter().map(|need| need.method.as_str()));
     let mut best: Option<Best> = None;
     let mut least = f64::INFINITY;
@@ -100,16 +82,16 @@ fn choice(scenes: &[OfScene<'_>], kind: Kind, error: f64) -> Choice {
             best = best_of(method, &own);
         }
     }
-    Choice { kind, error, scenes: of_kind.len(), best }
+    Choice { kind, error, scenes: scenes.len(), best }
 }
 
 /// What each method needs for the error, of those that reach it.
 fn needs(scene: &OfScene<'_>, error: f64) -> Vec<Need> {
     let level = error * scene.scale;
     let work = CostMeasure::Evaluations;
-    let all = prices(&scene.rows, level, work);
+    let all = prices(&scene.runs, level, work);
     let Some(cheapest) = all.first().map(|price| price.cost) else { return Vec::new() };
-    let semi_implicit = of_rule(&scene.rows, level, work, MethodId::SemiImplicitEuler.id());
+    let semi_implicit = of_rule(&scene.runs, level, work, MethodId::SemiImplicitEuler.id());
     let need = |price: CostAtError| Need {
         over_cheapest: price.cost / cheapest,
         step: price.h_s / scene.time_scale_s,
